@@ -148,7 +148,7 @@ def drive_by_past_a_table() -> Answer:
     found = ask(find("plan_drive_by"), arm.robot, arm, scene, tasks=tasks, **ends, **options)
     way = found.trajectory
     parts = {"outcome": [found.outcome, found.iterations, get(found, "solves", "attempts")]}
-    parts["trajectory"] = [way.times, way.positions, way.drive]
+    parts["trajectory"] = [] if way is None else [way.times, way.positions, way.drive]
     return parts, {"outcome": found.outcome.name, "seconds": found.duration, "iterations": found.iterations}
 
 

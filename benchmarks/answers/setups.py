@@ -72,7 +72,7 @@ def tucked(name: str, base: str) -> list[float]:
 
 
 def hand() -> Any:
-    return find("Gripper", "Hand")(
+    return find("Hand", "Gripper")(
         "gripper_tcp", approach=[1, 0, 0], closing=[0, 1, 0], max_opening=0.1, finger_depth=0.04, finger_width=0.022
     )
 

@@ -20,6 +20,8 @@ const std::vector<OptionField<MinimalGrippersOptions>>& minimal_grippers_fields(
       option<O>("longest_finger", &O::longest_finger, "no finger is longer [m]"),
       option<O>("opening_margin", &O::opening_margin, "stroke kept free beyond the part at either end [m]"),
       option<O>("length_margin", &O::length_margin, "kept from either limit of the finger length [m]"),
+      option<O>("finger_width", &O::finger_width, "of the grippers returned [m]"),
+      option<O>("finger_thickness", &O::finger_thickness, "of the grippers returned [m]"),
       option<O>("change_cost", &O::change_cost, "of changing the gripper between two parts"),
       option<O>("max_nodes", &O::max_nodes, "of the search for fewest changes"),
       option<O>("time_limit", &O::time_limit, "wall-clock cap [s]")};

@@ -93,6 +93,7 @@ const Fields& manipulation_fields() {
                   "no joint moves more between two checks of an edge [rad or m]"),
         option<O>("workspace_step", &O::edge, &EdgeOptions::workspace_step,
                   "no point of the robot or the object moves more between two checks [m]"),
+        option<O>("max_length", &O::max_length, "the least grasp cost among paths no longer than this; 0: their sum"),
         option<O>("time_limit", &O::time_limit, "wall-clock cap on IK and search, without the roadmap's building [s]"),
         option<O>("seed", &O::seed, "same seed, same path"),
         option<O>("threads", &O::threads, "0: all; does not change the answer")};

@@ -30,7 +30,8 @@ const std::vector<OptionField<ObjectPathOptions>>& object_path_fields() {
       option<O>("single_configuration", &O::single_configuration, "one arm configuration a pose (P2's single IK)"),
       option<O>("all_turns", &O::all_turns, "joints that may turn more than once come in every turn"),
       option<O>("redundant_values", &O::redundant_values, "samples of a seventh joint; 0: chosen"),
-      option<O>("gravity", &O::gravity, "along the world's -z [m/s2]")};
+      option<O>("gravity", &O::gravity, "along the world's -z [m/s2]"),
+      option<O>("max_sag", &O::max_sag, "largest displacement allowed at any pose [m]; 0: any")};
   return fields;
 }
 
@@ -131,9 +132,9 @@ py::dict object_path_dict(const ObjectPathResult& r) {
   return py::dict("outcome"_a = to_string(r.outcome), "cost"_a = r.cost, "joint_motion"_a = r.joint_motion,
                   "deflection"_a = r.deflection, "force_manipulability"_a = r.force_manipulability,
                   "path"_a = path_list(r.outcome == Outcome::solved ? std::optional(r.path) : std::nullopt),
-                  "sag"_a = r.sag, "violation"_a = r.violation, "violations"_a = r.violations,
-                  "rejections"_a = to_dict(r.rejections), "refused_edges"_a = r.refused_edges,
-                  "configurations"_a = r.configurations);
+                  "sag"_a = r.sag, "overloaded"_a = r.overloaded, "violation"_a = r.violation,
+                  "violations"_a = r.violations, "rejections"_a = to_dict(r.rejections),
+                  "refused_edges"_a = r.refused_edges, "configurations"_a = r.configurations);
 }
 
 std::string object_path_text(const ObjectPathResult& r) {
@@ -148,9 +149,11 @@ std::string object_path_text(const ObjectPathResult& r) {
     if (r.violations[i] && first < 0) first = static_cast<int>(i);
   }
   std::string out = "ObjectPathResult(not_found, violation " + std::to_string(r.violation);
-  if (first < 0) return out + ": every pose is reached, but no motion joins them)";
+  const std::string bent =
+      r.overloaded.empty() ? "" : ", the object is overloaded at " + std::to_string(r.overloaded.size());
+  if (first < 0) return out + ": every pose is reached" + (bent.empty() ? ", but no motion joins them)" : bent + ")");
   return out + ": " + std::to_string(unreachable) + " poses out of reach, " + std::to_string(collide) +
-         " in collision, the first is " + std::to_string(first) + ")";
+         " in collision, the first is " + std::to_string(first) + bent + ")";
 }
 
 void bind_object_path_result(py::module_& m) {
@@ -166,6 +169,7 @@ void bind_object_path_result(py::module_& m) {
           [](const R& r) { return path_array(r.outcome == Outcome::solved ? std::optional(r.path) : std::nullopt); },
           "(poses, n) configurations, or None.")
       .def_readonly("sag", &R::sag, "Largest displacement at each pose [m].")
+      .def_readonly("overloaded", &R::overloaded, "Poses at which it bends or bears more than it may.")
       .def_readonly("violation", &R::violation, "P2's Cost(C); 0 if and only if solved.")
       .def_readonly("violations", &R::violations, "Of each pose: 2 out of reach, 1 in collision, 0 neither.")
       .def_readonly("rejections", &R::rejections, "Configurations rejected, by cause.")
@@ -201,6 +205,12 @@ void bind_optimum(py::module_& m) {
       .def_readonly("history", &R::history, "Best cost after each of them; infinite while none was feasible.")
       .def_readonly("unreachable", &R::unreachable, "Of each pose: how many of the grasps tried do not reach it.")
       .def_readonly("colliding", &R::colliding, "Of each pose: at how many all arm configurations collide.")
+      .def("sag_candidates", &sag_candidates,
+           "Every feasible grasp with its mean sag [m] as its cost: candidates for plan_manipulation, whose "
+           "`max_length`\n"
+           "then takes the one that sags least among those whose motion is short enough.")
+      .def_readonly("overloaded", &R::overloaded,
+                    "Of each pose: with how many the pipe bends or bears more than it may.")
       .def("__repr__", [](const R& r) {
         return std::string("GraspOptimum(") + to_string(r.outcome) + ", " + std::to_string(r.evaluations) +
                " grasps tried, " + std::to_string(r.feasible.size()) + " feasible" +

@@ -79,3 +79,15 @@ from ._core import (
     optimize_grasp as optimize_grasp,
     population_search_names as population_search_names,
 )
+
+# A part cut into simple bodies, and the primitives that stand for them (P1 5.1, 5.2)
+from ._core import (
+    segment_mesh as segment_mesh,
+    MeshSegmentation as MeshSegmentation,
+    MeshSegment as MeshSegment,
+    ScrewThread as ScrewThread,
+    shape_diameters as shape_diameters,
+    fit_primitives as fit_primitives,
+    FittedPrimitive as FittedPrimitive,
+    GraspWidth as GraspWidth,
+)

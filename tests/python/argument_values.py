@@ -93,6 +93,7 @@ VALUES: dict[str, Any] = {
     "velocity_limits": np.ones(3),
     "acceleration_limits": np.ones(3),
     "size": np.array([0.1, 0.2, 0.3]),
+    "labels": np.zeros(12),
     "points": np.array([[1.0, 2, 3], [4, 5, 6]]),
     "centres": np.array([[1.0, 2, 3], [4, 5, 6]]),
     "point": np.array([0.1, 0.2, 0.3]),

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 
 namespace mmgrasp {
@@ -99,9 +100,9 @@ Pose checked_pose(const Eigen::Matrix4d& T, const std::string& field) {
 }
 
 double wrap_angle(double angle) {
-  if (angle > -M_PI && angle <= M_PI) return angle;
-  const double wrapped = std::remainder(angle, 2.0 * M_PI);
-  return wrapped <= -M_PI ? M_PI : wrapped;
+  if (angle > -detail::kPi && angle <= detail::kPi) return angle;
+  const double wrapped = std::remainder(angle, 2.0 * detail::kPi);
+  return wrapped <= -detail::kPi ? detail::kPi : wrapped;
 }
 
 }  // namespace mmgrasp

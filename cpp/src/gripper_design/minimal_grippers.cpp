@@ -187,6 +187,8 @@ class Problem {
     gripper.fingers = actuator.fingers;
     gripper.min_opening = candidate.min_opening;
     gripper.finger_length = candidate.finger_length;
+    gripper.finger_width = options_.finger_width;
+    gripper.finger_thickness = options_.finger_thickness;
     if (options_.grid_openings == 0) {
       double narrowest = kInfinity, widest = 0;
       gripper.finger_length = options_.shortest_finger;
@@ -237,6 +239,10 @@ void MinimalGrippersOptions::check() const {
           "must be a length of at least 0 [m]");
   require(std::isfinite(length_margin) && length_margin >= 0, "length_margin", length_margin,
           "must be a length of at least 0 [m]");
+  require(std::isfinite(finger_width) && finger_width > 0, "finger_width", finger_width,
+          "must be a positive length [m]");
+  require(std::isfinite(finger_thickness) && finger_thickness > 0, "finger_thickness", finger_thickness,
+          "must be a positive length [m]");
   require(std::isfinite(change_cost) && change_cost >= 0, "change_cost", change_cost, "must be at least 0");
   require(grid_openings >= 0 && grid_openings <= kMaxGrid, "grid_openings", grid_openings, "must be from 0 to 10000");
   require(grid_lengths >= 0 && grid_lengths <= kMaxGrid, "grid_lengths", grid_lengths, "must be from 0 to 10000");

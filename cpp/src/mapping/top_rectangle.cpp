@@ -39,7 +39,7 @@ class Profile {
     const auto it = std::lower_bound(reached_.begin(), reached_.end(), wanted);
     if (it == reached_.begin()) return x_.front();
     if (it == reached_.end()) return x_.back();
-    const auto i = static_cast<std::size_t>(it - reached_.begin());
+    const std::size_t i = it - reached_.begin();
     const double s = (wanted - reached_[i - 1]) / (reached_[i] - reached_[i - 1]);
     return x_[i - 1] + s * (x_[i] - x_[i - 1]);
   }

@@ -13,7 +13,7 @@ std::vector<int> cheapest_assignment(const Eigen::MatrixXd& costs) {
   require(costs.rows() == costs.cols(), "shape of costs", shape, "must be square");
   require(costs.allFinite(), "costs", costs.sum(), "must be finite");
   // Row and column 0 stand for "none": each row in turn finds the cheapest way to a free column over reduced costs.
-  const auto n = static_cast<std::size_t>(costs.rows());
+  const std::size_t n = costs.rows();
   std::vector<double> row_price(n + 1, 0), column_price(n + 1, 0), slack(n + 1);
   std::vector<std::size_t> row_of(n + 1, 0), previous(n + 1, 0);
   std::vector<char> done(n + 1);

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <string>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "structure/section_axes.hpp"
 
@@ -101,7 +102,7 @@ std::vector<LinkShape> Pipe::shapes(PipeEnds ends) const {
     const double along = length(static_cast<int>(i)), radius = diameters[i] / 2;
     Pose T = T_object_section(static_cast<int>(i));
     T = T * Eigen::Translation3d(along / 2, 0, 0) *
-        Eigen::AngleAxisd(3.14159265358979323846 / 2, Vector3d::UnitY());  // the shapes' z along the section's x
+        Eigen::AngleAxisd(detail::kPi / 2, Vector3d::UnitY());  // the shapes' z along the section's x
     LinkShape shape;
     shape.shape = ends == PipeEnds::round ? Shape(Capsule{radius, along}) : Shape(Cylinder{radius, along});
     shape.T_link_shape = T;

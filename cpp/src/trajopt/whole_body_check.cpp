@@ -58,7 +58,7 @@ std::vector<Sample> samples_of(const WholeBodyTrajectory& trajectory, int finer)
   std::vector<Sample> samples;
   const auto& times = trajectory.times();
   for (int i = 0; i + 1 < static_cast<int>(times.size()); ++i) {
-    const double h = times[static_cast<std::size_t>(i) + 1] - times[i];
+    const double h = times[i + 1] - times[i];
     for (int k = 0; k < finer; ++k) {
       const double time = times[i] + h * k / finer;
       samples.push_back({time, i, trajectory.at(time), trajectory.drive_at(time)});

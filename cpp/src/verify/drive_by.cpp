@@ -43,7 +43,7 @@ class DriveByCheck {
 
   void run() {
     const CheckedPick& pick = plan_.picks[drive_by_.pick];
-    where_ = context_.pick_name(static_cast<std::size_t>(drive_by_.pick)) + ", drive-by";
+    where_ = context_.pick_name(drive_by_.pick) + ", drive-by";
     if (!check_motion_shape(motion_, 3 + judge_.kinematics().arm_size(), where_, faults_)) return;
     for (const VectorXd& row : motion_.accelerations)
       if (row.size() != motion_.positions.front().size()) return fault("motion-shape", "accelerations are too few");
@@ -196,7 +196,7 @@ std::vector<std::size_t> known_picks(const Context& context, Faults& faults) {
                             p.grasp < static_cast<int>(plan.parts[part].grasps.size());
       if (!resolved) continue;  // said at the pick
       if (!seen.insert(pick).second) wrong = "pick " + std::to_string(pick) + " is done in passing twice";
-      if (pick > 0 && plan.picks[static_cast<std::size_t>(pick) - 1].stop == p.stop)
+      if (pick > 0 && plan.picks[pick - 1].stop == p.stop)
         wrong = "pick " + std::to_string(pick) + " is not the first of its stop";
     }
     if (wrong.empty())

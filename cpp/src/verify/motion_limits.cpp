@@ -91,8 +91,8 @@ void check_accelerations_fit(const CheckedMotion& motion, const Eigen::VectorXd&
     return;
   faults.push_back({"acceleration", where + ", t = " + text(worst.time) + " s",
                     "the stored accelerations are not those of the velocities at " + std::to_string(off) + " of " +
-                        std::to_string(all) + " places; the acceleration of '" +
-                        names[static_cast<std::size_t>(worst.joint)] + "' is off by " + text(worst.value)});
+                        std::to_string(all) + " places; the acceleration of '" + names[worst.joint] + "' is off by " +
+                        text(worst.value)});
 }
 
 bool check_motion_shape(const CheckedMotion& motion, int joints, const std::string& where, Faults& faults) {

@@ -10,7 +10,7 @@ import numpy.typing
 import os
 import typing
 from . import verify
-__all__: list[str] = ['BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'BeamExtreme', 'BeamFrame', 'BeamMaterial', 'BeamMember', 'BeamSection', 'BeamState', 'BeamSupport', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactPairProvenance', 'ContactPatch', 'CuboidFit', 'Cylinder', 'DepthCamera', 'DepthImage', 'DepthNoise', 'DerivativeFreeResult', 'DistanceField', 'DistanceResult', 'DrawnSuccess', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'FeasibleGrasp', 'FittedCuboid', 'Grasp', 'GraspOptimum', 'GraspRating', 'GraspReport', 'GraspSuccess', 'GraspSynthesis', 'Graspability', 'GridDistanceField', 'Gripper', 'GripperActuator', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'IntegrationReport', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LineGrasp', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'Mesh', 'MeshDistanceField', 'MinimalGrippersResult', 'MotionResult', 'MotionStats', 'NodeLoad', 'ObjectPathEvaluator', 'ObjectPathProblem', 'ObjectPathResult', 'ObjectRegions', 'ObjectSegmentation', 'Obstruction', 'OccupancyMap', 'OccupancyReport', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'PairwiseWeights', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'ProbabilisticSdf', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotMotion', 'RobotSource', 'SdfHits', 'SearchTree', 'SegmentRequirement', 'SegmentedObject', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'SupportedFrame', 'SupportingPlane', 'ToolRegion', 'TourResult', 'Tray', 'Voxels', 'WholeBodyTrajectory', 'World', 'beam_frame', 'cache_folder', 'camera_view_objective', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'copper', 'cover_from_intersections', 'derivative_free_solver_names', 'drive_arc', 'eigengrasp_hand', 'evaluate_graspability', 'find_package', 'fit_cuboids', 'follow_object_path', 'grasp_search_names', 'graspability_map', 'hand_masks', 'inscribed_circle', 'joint_limit_objective', 'joint_velocity', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimal_grippers', 'minimize_derivative_free', 'nlp_solver_names', 'optimised_order', 'optimize_grasp', 'paired_order', 'pairwise_weights', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stops_exact', 'plan_straight_line', 'planner_names', 'platform_velocity', 'population_search_names', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'rectangular_section', 'render_depth', 'resting_poses', 'robust_intersections', 'round_section', 'route_lengths', 'run_policy', 'sample_grasps', 'segment_depth_image', 'segment_objects', 'self_distance_objective', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_set_cover', 'synthesize_grasps', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
+__all__: list[str] = ['AssemblyGrasp', 'AssemblyOperation', 'BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'BeamExtreme', 'BeamFrame', 'BeamMaterial', 'BeamMember', 'BeamSection', 'BeamState', 'BeamSupport', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactPairProvenance', 'ContactPatch', 'CuboidFit', 'Cylinder', 'DepthCamera', 'DepthImage', 'DepthNoise', 'DerivativeFreeResult', 'DistanceField', 'DistanceResult', 'DrawnSuccess', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'Facet', 'FeasibleGrasp', 'FingerLengthRange', 'FittedCuboid', 'FittedPrimitive', 'Grasp', 'GraspOptimum', 'GraspRating', 'GraspReport', 'GraspSuccess', 'GraspSynthesis', 'GraspWidth', 'Graspability', 'GridDistanceField', 'Gripper', 'GripperActuator', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'IntegrationReport', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LineGrasp', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'Mesh', 'MeshDistanceField', 'MeshSegment', 'MeshSegmentation', 'MinimalGrippersResult', 'MotionResult', 'MotionStats', 'NodeLoad', 'ObjectPathEvaluator', 'ObjectPathProblem', 'ObjectPathResult', 'ObjectRegions', 'ObjectSegmentation', 'Obstruction', 'OccupancyMap', 'OccupancyReport', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'PairwiseWeights', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedMesh', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'ProbabilisticSdf', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotMotion', 'RobotSource', 'ScrewThread', 'SdfHits', 'SearchTree', 'SegmentRequirement', 'SegmentedObject', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'SupportedFrame', 'SupportingPlane', 'ToolRegion', 'TourResult', 'Tray', 'Voxels', 'WholeBodyTrajectory', 'World', 'beam_frame', 'cache_folder', 'camera_view_objective', 'centric_grasps', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'copper', 'cover_from_intersections', 'derivative_free_solver_names', 'drive_arc', 'eigengrasp_hand', 'evaluate_graspability', 'find_package', 'finger_length_range', 'fit_cuboids', 'fit_primitives', 'follow_object_path', 'grasp_search_names', 'graspability_map', 'hand_masks', 'inscribed_circle', 'jaw_grasps', 'joint_limit_objective', 'joint_velocity', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimal_grippers', 'minimize_derivative_free', 'nlp_solver_names', 'optimised_order', 'optimize_grasp', 'paired_order', 'pairwise_weights', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stops_exact', 'plan_straight_line', 'planar_facets', 'planner_names', 'platform_velocity', 'population_search_names', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'rectangular_section', 'render_depth', 'resting_poses', 'robust_intersections', 'round_section', 'route_lengths', 'run_policy', 'sample_grasps', 'segment_depth_image', 'segment_mesh', 'segment_objects', 'self_distance_objective', 'shape_diameters', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_set_cover', 'synthesize_grasps', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
 class Error(Exception):
     """
     Base of all errors of mmgrasp.
@@ -4550,6 +4550,171 @@ class ObjectSegmentation:
         """
         What makes the answer doubtful, or empty.
         """
+class ScrewThread:
+    """
+    A screw thread that segment_mesh found.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def T_mesh_thread(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (4, 4): z along the axis, origin at the middle of the thread.
+        """
+    @property
+    def crest_radius(self) -> float:
+        """
+        [m]; smaller than the root's in a nut.
+        """
+    @property
+    def faces(self) -> numpy.typing.NDArray[numpy.int32]:
+        """
+        Faces of the mesh (n,), ascending.
+        """
+    @property
+    def length(self) -> float:
+        """
+        Along the axis [m].
+        """
+    @property
+    def pitch(self) -> float:
+        """
+        Along the axis in one turn [m]; positive: right-handed.
+        """
+    @property
+    def root_radius(self) -> float:
+        """
+        [m]
+        """
+class MeshSegment:
+    """
+    One of the simple bodies that a part is composed of.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def area(self) -> float:
+        """
+        [m^2]
+        """
+    @property
+    def diameter(self) -> float:
+        """
+        Median of its faces' shape diameters by area [m].
+        """
+    @property
+    def faces(self) -> numpy.typing.NDArray[numpy.int32]:
+        """
+        Faces of the mesh (n,), ascending.
+        """
+    @property
+    def threaded(self) -> bool:
+        """
+        More than a tenth of its area is screw thread, which must not be grasped.
+        """
+class GraspWidth:
+    """
+    A width at which fingers may close on a segment.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def axis(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Closing direction of a box, axis of a round wall (3,): a unit vector in the mesh's frame.
+        """
+    @property
+    def covered(self) -> float:
+        """
+        Share of the box' faces (the lesser of the two) or of the turn around the wall that is surface.
+        """
+    @property
+    def width(self) -> float:
+        """
+        [m]
+        """
+class FittedPrimitive:
+    """
+    The primitive that stands for a segment (P1, section 5.2.2).
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def T_mesh_primitive(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (4, 4): centre; z along the axis of a cylinder or cone, which narrows along z.
+        """
+    @property
+    def deviation(self) -> float:
+        """
+        Mean distance of the segment's faces from the primitive's surface that they lie on [m].
+        """
+    @property
+    def hull_volume(self) -> float:
+        """
+        Of the segment's convex hull [m^3].
+        """
+    @property
+    def kind(self) -> str:
+        """
+        cylinder, box, cone or sphere.
+        """
+    @property
+    def size(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (3,) [m]: lengths of a box; diameter twice and length of a cylinder; diameters at foot and top and length of a cone; diameter of a sphere.
+        """
+    @property
+    def volume(self) -> float:
+        """
+        Of the primitive [m^3].
+        """
+    @property
+    def widths(self) -> list[GraspWidth]:
+        """
+        Most covered first; empty where there is no surface to hold.
+        """
+class MeshSegmentation:
+    """
+    The bodies that a part is composed of, and which face belongs to which.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def clusters(self) -> int:
+        """
+        Gaussians that the diameters called for.
+        """
+    @property
+    def diameters(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Shape diameter of each face (m,) [m]; 0 where it is unknown.
+        """
+    @property
+    def labels(self) -> numpy.typing.NDArray[numpy.int32]:
+        """
+        Segment of each face (m,).
+        """
+    @property
+    def outcome(self) -> Outcome:
+        """
+        Solved.
+        """
+    @property
+    def segments(self) -> list[MeshSegment]:
+        """
+        Largest area first.
+        """
+    @property
+    def threads(self) -> list[ScrewThread]:
+        """
+        Screw threads, largest first.
+        """
+    @property
+    def turned(self) -> bool:
+        """
+        The mesh was inside out (open ones may be) and its faces were turned.
+        """
 class Graspability:
     """
     Grasps, best first, and what became of the other places checked.
@@ -5207,6 +5372,11 @@ class ObjectPathResult:
         solved or not_found.
         """
     @property
+    def overloaded(self) -> list[int]:
+        """
+        Poses at which it bends or bears more than it may.
+        """
+    @property
     def path(self) -> numpy.typing.NDArray[numpy.float64] | typing.Any:
         """
         (poses, n) configurations, or None.
@@ -5266,7 +5436,7 @@ class ObjectPathEvaluator:
     """
     Costs many grasps along one path: prepared once. Not for several threads at a time.
     """
-    def __init__(self, problem: ObjectPathProblem, *, motion_weight: float = 0.587, deflection_weight: float = 0.089, manipulability_weight: float = 0.324, motion_scale: float = 1.0, deflection_scale: float = 0.001, manipulability_scale: float = 1.0, max_joint_step: float = 0.5, position_tolerance: float = 0.01, rotation_tolerance: float = 0.05, edge_step: float = 0.02, check_edges: bool = True, single_configuration: bool = False, all_turns: bool = True, redundant_values: int = 0, gravity: float = 9.81) -> None:
+    def __init__(self, problem: ObjectPathProblem, *, motion_weight: float = 0.587, deflection_weight: float = 0.089, manipulability_weight: float = 0.324, motion_scale: float = 1.0, deflection_scale: float = 0.001, manipulability_scale: float = 1.0, max_joint_step: float = 0.5, position_tolerance: float = 0.01, rotation_tolerance: float = 0.05, edge_step: float = 0.02, check_edges: bool = True, single_configuration: bool = False, all_turns: bool = True, redundant_values: int = 0, gravity: float = 9.81, max_sag: float = 0.0) -> None:
         """
         Prepares robot, world and object.
         
@@ -5286,6 +5456,7 @@ class ObjectPathEvaluator:
             all_turns: bool = True  # joints that may turn more than once come in every turn
             redundant_values: int = 0  # samples of a seventh joint; 0: chosen
             gravity: float = 9.81  # along the world's -z [m/s2]
+            max_sag: float = 0.0  # largest displacement allowed at any pose [m]; 0: any
         """
     def evaluate(self, grasp: Grasp) -> ObjectPathResult:
         """
@@ -5321,6 +5492,11 @@ class GraspOptimum:
     """
     def __repr__(self) -> str:
         ...
+    def sag_candidates(self) -> list[Grasp]:
+        """
+        Every feasible grasp with its mean sag [m] as its cost: candidates for plan_manipulation, whose `max_length`
+        then takes the one that sags least among those whose motion is short enough.
+        """
     @property
     def boxes(self) -> int:
         """
@@ -5373,6 +5549,11 @@ class GraspOptimum:
         infeasible: proven that no grasp can follow the path.
         """
     @property
+    def overloaded(self) -> list[int]:
+        """
+        Of each pose: with how many the pipe bends or bears more than it may.
+        """
+    @property
     def path(self) -> ObjectPathResult:
         """
         As follow_object_path gives it.
@@ -5381,6 +5562,163 @@ class GraspOptimum:
     def unreachable(self) -> list[int]:
         """
         Of each pose: how many of the grasps tried do not reach it.
+        """
+class PlacedMesh:
+    """
+    A part where it is in its subassembly. Closed meshes are solids.
+    """
+    def __init__(self, name: str, mesh: Mesh, pose: numpy.typing.ArrayLike | None = None) -> None:
+        """
+        Name for messages, mesh, T_subassembly_mesh (4, 4).
+        """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def mesh(self) -> Mesh:
+        """
+        As given.
+        """
+    @property
+    def name(self) -> str:
+        """
+        For messages.
+        """
+    @property
+    def pose(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        T_subassembly_mesh, (4, 4).
+        """
+class AssemblyOperation:
+    """
+    One operation of an assembly (P1 5.3.1): a gripper brings the active subassembly to the passive one, lets go of it and moves back along its approach.
+    
+        AssemblyOperation([PlacedMesh("sleeve", sleeve)], [PlacedMesh("shaft", shaft)],
+                          [mg.pose([0, 0, 0.1]), mg.pose([0, 0, 0])])
+    """
+    def __init__(self, active: collections.abc.Sequence[PlacedMesh], passive: collections.abc.Sequence[PlacedMesh], motion: numpy.typing.ArrayLike) -> None:
+        """
+        Parts held, parts that stay (fixture and table too), T_passive_active from before to the end, (m, 4, 4).
+        """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def active(self) -> list[PlacedMesh]:
+        """
+        Held.
+        """
+    @property
+    def motion(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        T_passive_active, (m, 4, 4); the last one where the gripper opens.
+        """
+    @property
+    def passive(self) -> list[PlacedMesh]:
+        """
+        Stays where it is.
+        """
+class AssemblyGrasp:
+    """
+    How a gripper with straight fingers takes the active subassembly. The tool frame lies in the plane of the finger tips with z along the approach; the first finger moves along x.
+    
+        AssemblyGrasp(T_active_tool, fingers=3, opening=0.04)
+    """
+    def __init__(self, T_active_tool: numpy.typing.ArrayLike, *, fingers: int = 2, opening: float = 0.02, width: float = 0.015, thickness: float = 0.008, clearance: float = 0.002, palm_radius: float = 0.03) -> None:
+        """
+        Tool frame (4, 4), 2 or 3 fingers, lengths [m].
+        """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def T_active_tool(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (4, 4)
+        """
+    @property
+    def clearance(self) -> float:
+        """
+        By how much each finger opens to approach and to let go [m].
+        """
+    @property
+    def fingers(self) -> int:
+        """
+        2: parallel jaws; 3: centric fingers.
+        """
+    @property
+    def opening(self) -> float:
+        """
+        Between the pads, or the diameter that three of them touch [m].
+        """
+    @property
+    def palm_radius(self) -> float:
+        """
+        Of the palm and of all behind it [m].
+        """
+    @property
+    def thickness(self) -> float:
+        """
+        Of a finger, along the closing direction [m].
+        """
+    @property
+    def width(self) -> float:
+        """
+        Of a finger, across approach and closing direction [m].
+        """
+class FingerLengthRange:
+    """
+    Which finger lengths take a part through an operation: L- and L+ of P1.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def free(self) -> bool:
+        """
+        There is such a length.
+        """
+    @property
+    def longest(self) -> float:
+        """
+        With which the fingers meet nothing [m]; infinite where nothing limits it.
+        """
+    @property
+    def longest_by(self) -> str:
+        """
+        What sets longest or leaves no length at all, or ''.
+        """
+    @property
+    def shortest(self) -> float:
+        """
+        With which the palm meets nothing [m].
+        """
+    @property
+    def shortest_by(self) -> str:
+        """
+        What sets shortest: "<part> at <when>", or ''.
+        """
+class Facet:
+    """
+    A nearly plane piece of a surface (P1 5.3.3, planar clustering).
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def area(self) -> float:
+        """
+        [m2]
+        """
+    @property
+    def centre(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Of area [m], (3,).
+        """
+    @property
+    def faces(self) -> list[int]:
+        """
+        Triangles of the mesh, ascending.
+        """
+    @property
+    def normal(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Outwards, weighted by area, (3,).
         """
 class SegmentRequirement:
     """
@@ -5626,6 +5964,8 @@ class MinimalGrippersResult:
         """
 def _allowed_bodies(robot: Robot, world: World) -> list[tuple[str, str]]:
     ...
+def _assembly_grasp_option_table() -> dict[str, typing.Any]:
+    ...
 def _capability_option_table() -> dict[str, typing.Any]:
     ...
 def _cartesian_option_table() -> dict[str, typing.Any]:
@@ -5655,6 +5995,8 @@ def _graspability_option_table() -> dict[str, typing.Any]:
 def _ik_option_table() -> dict[str, typing.Any]:
     ...
 def _manipulation_option_table() -> dict[str, typing.Any]:
+    ...
+def _mesh_segmentation_option_table() -> dict[str, typing.Any]:
     ...
 def _minimal_grippers_option_table() -> dict[str, typing.Any]:
     ...
@@ -5693,6 +6035,8 @@ def _sdf_option_table() -> dict[str, typing.Any]:
     ...
 def _segmentation_option_table() -> dict[str, typing.Any]:
     ...
+def _shape_diameter_option_table() -> dict[str, typing.Any]:
+    ...
 def _supply_option_table() -> dict[str, typing.Any]:
     ...
 def _synthesis_option_table() -> dict[str, typing.Any]:
@@ -5713,6 +6057,22 @@ def camera_view_objective(group: JointGroup, camera_link: str, point: numpy.typi
     """
     Weight times the squared distance [m] of a world point from the optical axis (+z) of a camera on a link, plus the
     squared depth by which it lies behind the camera.
+    """
+def centric_grasps(T_mesh_cylinder: numpy.typing.ArrayLike, diameter: float, low: float, high: float, *, facet_angle: float = 0.1, parallel_angle: float = 0.05, directions: int = 12, min_contact: float = 0.003, pad_length: float = 0.02, max_opening: float = 0.25, finger_width: float = 0.015, finger_thickness: float = 0.008, clearance: float = 0.002, palm_margin: float = 0.005) -> list[AssemblyGrasp]:
+    """
+    Grasps by three centric fingers along the z axis of a cylinder that ends at `low` and `high` on it [m], from either end, fingers turned in steps, at up to three depths (P1 5.2.3).
+    
+    Keyword options:
+        facet_angle: float = 0.1  # faces of one facet bend no more from its largest [rad]
+        parallel_angle: float = 0.05  # facets between jaws are off parallel by no more [rad]
+        directions: int = 12  # approaches about the closing axis, or turns of centric fingers
+        min_contact: float = 0.003  # pads overlap the segment by at least this, along the approach [m]
+        pad_length: float = 0.02  # of a pad along the approach [m]
+        max_opening: float = 0.25  # wider segments are left out [m]
+        finger_width: float = 0.015  # across approach and closing direction [m]
+        finger_thickness: float = 0.008  # along the closing direction [m]
+        clearance: float = 0.002  # by which each finger opens to approach and to let go [m]
+        palm_margin: float = 0.005  # the palm reaches beyond the open fingers by this [m]
     """
 def cheapest_assignment(costs: numpy.typing.ArrayLike) -> list[int]:
     """
@@ -5794,6 +6154,10 @@ def find_package(name: str, folder: str | os.PathLike[str], package_dirs: collec
     """
     Folder of the ROS package that a file in `folder` means by package://NAME or $(find NAME); empty if none.
     """
+def finger_length_range(grasp: AssemblyGrasp, operation: AssemblyOperation, *, step: float = 0.0005) -> FingerLengthRange:
+    """
+    The finger lengths with which neither fingers nor palm meet the subassemblies: on the approach, along the whole motion, and while the gripper opens and moves back (P1 5.3.2, 5.3.3). The palm and what carries it count as endless. Exact for motions along the approach; others are looked at every `step` [m] with as much margin.
+    """
 def fit_cuboids(points: numpy.typing.ArrayLike, *, T_world_tray: numpy.typing.ArrayLike | None = None, tray_size: numpy.typing.ArrayLike | None = None, wall: float = 0.005, up: numpy.typing.ArrayLike | None = None, eye: numpy.typing.ArrayLike | None = None, plane_tolerance: float = 0.008, wall_margin: float = 0.006, up_angle: float = 0.35, max_height: float = 0.5, cluster_tolerance: float = 0.01, leaf: float = 0.003, min_points: int = 60, plane_iterations: int = 1000) -> CuboidFit:
     """
     Box-shaped parts in a cloud (n, 3) (P1 3.7.1): the supporting plane and the tray are taken out, every cluster above
@@ -5810,7 +6174,14 @@ def fit_cuboids(points: numpy.typing.ArrayLike, *, T_world_tray: numpy.typing.Ar
         min_points: int = 60  # smaller clusters are left out
         plane_iterations: int = 1000  # random planes tried
     """
-def follow_object_path(problem: ObjectPathProblem, grasp: Grasp, *, motion_weight: float = 0.587, deflection_weight: float = 0.089, manipulability_weight: float = 0.324, motion_scale: float = 1.0, deflection_scale: float = 0.001, manipulability_scale: float = 1.0, max_joint_step: float = 0.5, position_tolerance: float = 0.01, rotation_tolerance: float = 0.05, edge_step: float = 0.02, check_edges: bool = True, single_configuration: bool = False, all_turns: bool = True, redundant_values: int = 0, gravity: float = 9.81) -> ObjectPathResult:
+def fit_primitives(mesh: Mesh, labels: numpy.typing.ArrayLike) -> list[FittedPrimitive]:
+    """
+    The cylinder, box, cone or sphere that stands for each segment of a mesh: the one whose volume is closest to that of
+    the segment's convex hull, of those with surface on them (P1, section 5.2.2). `labels` (m,): the segment of each face, as
+    MeshSegmentation.labels. Inner walls are never offered for grasping, nor are sides of a box with nothing on them. Raises
+    InvalidInput when there is not one label >= 0 a face.
+    """
+def follow_object_path(problem: ObjectPathProblem, grasp: Grasp, *, motion_weight: float = 0.587, deflection_weight: float = 0.089, manipulability_weight: float = 0.324, motion_scale: float = 1.0, deflection_scale: float = 0.001, manipulability_scale: float = 1.0, max_joint_step: float = 0.5, position_tolerance: float = 0.01, rotation_tolerance: float = 0.05, edge_step: float = 0.02, check_edges: bool = True, single_configuration: bool = False, all_turns: bool = True, redundant_values: int = 0, gravity: float = 9.81, max_sag: float = 0.0) -> ObjectPathResult:
     """
     The cheapest motion of the arm that carries the object through all poses with one grasp, over all arm
     configurations (P2 3.3.3, Algorithm 3.1), motions between poses checked finely.
@@ -5831,6 +6202,7 @@ def follow_object_path(problem: ObjectPathProblem, grasp: Grasp, *, motion_weigh
         all_turns: bool = True  # joints that may turn more than once come in every turn
         redundant_values: int = 0  # samples of a seventh joint; 0: chosen
         gravity: float = 9.81  # along the world's -z [m/s2]
+        max_sag: float = 0.0  # largest displacement allowed at any pose [m]; 0: any
     """
 def grasp_search_names() -> list[str]:
     """
@@ -5874,6 +6246,22 @@ def inscribed_circle(grid: BaseGrid, cells: numpy.typing.ArrayLike, heading: int
     """
     Centre (2,) and radius [m] of the largest disc inside the union of cells of one layer.
     """
+def jaw_grasps(mesh: Mesh, faces: collections.abc.Sequence[int] = [], *, facet_angle: float = 0.1, parallel_angle: float = 0.05, directions: int = 12, min_contact: float = 0.003, pad_length: float = 0.02, max_opening: float = 0.25, finger_width: float = 0.015, finger_thickness: float = 0.008, clearance: float = 0.002, palm_margin: float = 0.005) -> list[AssemblyGrasp]:
+    """
+    Grasps by two parallel jaws: opposite, nearly parallel facets of a segment (`faces`; none: the whole mesh) whose shadows overlap, approached from every direction across the closing axis, at up to three depths (P1 5.3.3).
+    
+    Keyword options:
+        facet_angle: float = 0.1  # faces of one facet bend no more from its largest [rad]
+        parallel_angle: float = 0.05  # facets between jaws are off parallel by no more [rad]
+        directions: int = 12  # approaches about the closing axis, or turns of centric fingers
+        min_contact: float = 0.003  # pads overlap the segment by at least this, along the approach [m]
+        pad_length: float = 0.02  # of a pad along the approach [m]
+        max_opening: float = 0.25  # wider segments are left out [m]
+        finger_width: float = 0.015  # across approach and closing direction [m]
+        finger_thickness: float = 0.008  # along the closing direction [m]
+        clearance: float = 0.002  # by which each finger opens to approach and to let go [m]
+        palm_margin: float = 0.005  # the palm reaches beyond the open fingers by this [m]
+    """
 def joint_limit_objective(group: JointGroup, soft_fraction: float = 0.1, weight: float = 1.0) -> IkObjective:
     """
     Weight times the squared depth inside the outer `soft_fraction` of each joint's range, at both ends.
@@ -5907,7 +6295,7 @@ def maximal_intersections(grid: BaseGrid, regions: collections.abc.Sequence[Base
     """
     Those of the robust sets that are part of no other one: enough to prove a least number of stops.
     """
-def minimal_grippers(requirements: collections.abc.Sequence[SegmentRequirement], actuators: collections.abc.Sequence[GripperActuator], *, grid: tuple[int, int] | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, shortest_finger: float = 0.01, longest_finger: float = 0.5, opening_margin: float = 0.0, length_margin: float = 0.0, change_cost: float = 0.0, max_nodes: int = 20000, time_limit: float = 60.0) -> MinimalGrippersResult:
+def minimal_grippers(requirements: collections.abc.Sequence[SegmentRequirement], actuators: collections.abc.Sequence[GripperActuator], *, grid: tuple[int, int] | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, shortest_finger: float = 0.01, longest_finger: float = 0.5, opening_margin: float = 0.0, length_margin: float = 0.0, finger_width: float = 0.015, finger_thickness: float = 0.008, change_cost: float = 0.0, max_nodes: int = 20000, time_limit: float = 60.0) -> MinimalGrippersResult:
     """
     The least set of grippers that takes every part of an assembly, and which one takes which part by which segment (P1 5.3.4, (5.1) and (5.2) with <=). Parts are assembled in the order in which the requirements first name them; of all cheapest sets one with the fewest changes of the gripper is taken. Proven over all grippers; with `grid=(n, m)` only over P1's n openings and m finger lengths.
     
@@ -5916,6 +6304,8 @@ def minimal_grippers(requirements: collections.abc.Sequence[SegmentRequirement],
         longest_finger: float = 0.5  # no finger is longer [m]
         opening_margin: float = 0.0  # stroke kept free beyond the part at either end [m]
         length_margin: float = 0.0  # kept from either limit of the finger length [m]
+        finger_width: float = 0.015  # of the grippers returned [m]
+        finger_thickness: float = 0.008  # of the grippers returned [m]
         change_cost: float = 0.0  # of changing the gripper between two parts
         max_nodes: int = 20000  # of the search for fewest changes
         time_limit: float = 60.0  # wall-clock cap [s]
@@ -5939,7 +6329,7 @@ def optimised_order(grid: BaseGrid, cells: collections.abc.Sequence[collections.
     """
     The order in which parts are best picked when the trays of each group share a stop, never worse than `order`. `cells` is [tray][part], bitmaps (headings, ny, nx).
     """
-def optimize_grasp(problem: ObjectPathProblem, pipe: Pipe, *, gripper: Hand | None = None, algorithm: str = 'bees', neighbourhood_kind: str = 'connected_sections', progress: collections.abc.Callable[[str, float], typing.Any] | None = None, motion_weight: float = 0.587, deflection_weight: float = 0.089, manipulability_weight: float = 0.324, motion_scale: float = 1.0, deflection_scale: float = 0.001, manipulability_scale: float = 1.0, max_joint_step: float = 0.5, position_tolerance: float = 0.01, rotation_tolerance: float = 0.05, edge_step: float = 0.02, check_edges: bool = True, single_configuration: bool = False, all_turns: bool = True, redundant_values: int = 0, gravity: float = 9.81, population: int = 34, max_evaluations: int = 1530, target: float = ..., seed: int = 1, elite_sites: int = 1, best_sites: int = 4, elite_recruits: int = 10, recruits: int = 3, stagnation_limit: int = 10, neighbourhood: float = 0.2, shrinking: float = 0.8, mutation_rate: float = 0.3, mutation_size: float = 0.25, connectivity: float = 0.5, inertia: float = 0.7, acceleration: float = 2.0, max_gap: float = 0.001, max_boxes: int = 1000000, time_limit: float = 600.0, threads: int = 0) -> GraspOptimum:
+def optimize_grasp(problem: ObjectPathProblem, pipe: Pipe, *, gripper: Hand | None = None, algorithm: str = 'bees', neighbourhood_kind: str = 'connected_sections', progress: collections.abc.Callable[[str, float], typing.Any] | None = None, motion_weight: float = 0.587, deflection_weight: float = 0.089, manipulability_weight: float = 0.324, motion_scale: float = 1.0, deflection_scale: float = 0.001, manipulability_scale: float = 1.0, max_joint_step: float = 0.5, position_tolerance: float = 0.01, rotation_tolerance: float = 0.05, edge_step: float = 0.02, check_edges: bool = True, single_configuration: bool = False, all_turns: bool = True, redundant_values: int = 0, gravity: float = 9.81, max_sag: float = 0.0, population: int = 34, max_evaluations: int = 1530, target: float = ..., seed: int = 1, elite_sites: int = 1, best_sites: int = 4, elite_recruits: int = 10, recruits: int = 3, stagnation_limit: int = 10, neighbourhood: float = 0.2, shrinking: float = 0.8, mutation_rate: float = 0.3, mutation_size: float = 0.25, connectivity: float = 0.5, inertia: float = 0.7, acceleration: float = 2.0, max_gap: float = 0.001, max_boxes: int = 1000000, time_limit: float = 600.0, threads: int = 0) -> GraspOptimum:
     """
     The grasp of a pipe with the least cost along the path, by a population search: bees, ga or pso (P2 3.4),
     or with its optimum proven: branch_and_bound.
@@ -5962,6 +6352,7 @@ def optimize_grasp(problem: ObjectPathProblem, pipe: Pipe, *, gripper: Hand | No
         all_turns: bool = True  # joints that may turn more than once come in every turn
         redundant_values: int = 0  # samples of a seventh joint; 0: chosen
         gravity: float = 9.81  # along the world's -z [m/s2]
+        max_sag: float = 0.0  # largest displacement allowed at any pose [m]; 0: any
         population: int = 34  # points a round
         max_evaluations: int = 1530  # budget in grasps
         target: float = -inf  # ends as solved once a grasp costs no more
@@ -6036,7 +6427,7 @@ def plan_drive_by(robot: Robot, group: JointGroup, world: World, *, start: numpy
         look_out: float = 0.15  # pairs of bodies nearer than this are constrained [m]
         refinements: int = 6  # times that collision constraints may be added
     """
-def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None = None, padding: float | mmgrasp._records.WorldPadding | collections.abc.Mapping[str, float | collections.abc.Mapping[str, float]] | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, on_solution: collections.abc.Callable[[Improvement], typing.Any] | None = None, planner: str = 'prm_star_mg', ik_solutions: int = 8, first_grasps: int = 4, straight: bool = True, ik_restarts: int = 30, joint_step: float = 0.02, workspace_step: float = 0.005, time_limit: float = 15.0, seed: int = 1, threads: int = 0, batch: int = 0, lazy_grasps: bool = True, max_vertices: int = 0, shorten: bool = True, refinements: int = 4, vertices: int = 5000, gamma: float = 0.0, neighbours: int = 0, roadmap_seed: int = 1, max_iterations: int = 1000, range: float = 1.5, rrt_gamma: float = 0.0, exploration: float = 0.5, bidirectional: bool = True, informed: bool = True, goal_cost: float = 0.0, keep_trees: bool = False) -> ManipulationResult:
+def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None = None, padding: float | mmgrasp._records.WorldPadding | collections.abc.Mapping[str, float | collections.abc.Mapping[str, float]] | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, on_solution: collections.abc.Callable[[Improvement], typing.Any] | None = None, planner: str = 'prm_star_mg', ik_solutions: int = 8, first_grasps: int = 4, straight: bool = True, ik_restarts: int = 30, joint_step: float = 0.02, workspace_step: float = 0.005, max_length: float = 0.0, time_limit: float = 15.0, seed: int = 1, threads: int = 0, batch: int = 0, lazy_grasps: bool = True, max_vertices: int = 0, shorten: bool = True, refinements: int = 4, vertices: int = 5000, gamma: float = 0.0, neighbours: int = 0, roadmap_seed: int = 1, max_iterations: int = 1000, range: float = 1.5, rrt_gamma: float = 0.0, exploration: float = 0.5, bidirectional: bool = True, informed: bool = True, goal_cost: float = 0.0, keep_trees: bool = False) -> ManipulationResult:
     """
     Collision-free path of the group that carries the object from start to goal with the best of the grasps (P2 chapters 4 and 5). Every grasp is checked. `padding`: in place of that of the problem's world, see World.padding. `on_solution` is called with every better solution (an Improvement); what it raises ends the call.
     
@@ -6048,6 +6439,7 @@ def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None =
         ik_restarts: int = 30  # random starts of arms without a closed form
         joint_step: float = 0.02  # no joint moves more between two checks of an edge [rad or m]
         workspace_step: float = 0.005  # no point of the robot or the object moves more between two checks [m]
+        max_length: float = 0.0  # the least grasp cost among paths no longer than this; 0: their sum
         time_limit: float = 15.0  # wall-clock cap on IK and search, without the roadmap's building [s]
         seed: int = 1  # same seed, same path
         threads: int = 0  # 0: all; does not change the answer
@@ -6144,6 +6536,10 @@ def plan_straight_line(checker: CollisionChecker, start: numpy.typing.ArrayLike,
         rotation_step: float = 0.02  # largest tool rotation between two waypoints [rad]
         jump_threshold: float = 0.2  # a larger joint motion between two waypoints is a jump
         joint_step: float = 0.02  # largest joint motion between two checks [rad or m]
+    """
+def planar_facets(mesh: Mesh, faces: collections.abc.Sequence[int] = [], *, angle: float = 0.1) -> list[Facet]:
+    """
+    Nearly plane pieces of a mesh, or of some of its faces (none: all), largest first: each grows from the largest face left, as long as faces bend no more than `angle` [rad] from it.
     """
 def planner_names() -> list[str]:
     """
@@ -6281,6 +6677,28 @@ def segment_depth_image(image: DepthImage, *, plane: SupportingPlane | None = No
         min_points: int = 100  # smaller objects are left out
         plane_iterations: int = 1000  # random planes tried
     """
+def segment_mesh(mesh: Mesh, *, progress: typing.Any | None = None, rays: int = 30, cone: float = 2.0943951023931953, outlier: float = 1.0, ray_lengths: bool = False, max_clusters: int = 8, smoothing: float = 0.3, crease: float = 0.6, min_size: float = 0.02, convexity: float = 0.05, smooth_threads: bool = True, faces: int = 20000, seed: int = 1, threads: int = 0) -> MeshSegmentation:
+    """
+    Cuts the surface of a mechanical part into the simple bodies that it is composed of (P1, section 5.1): by shape diameter
+    (Gaussian mixture, minimum cuts) and where the surface bends inwards; pieces whose hull is no more than the two are joined
+    again, and inner walls go with the outer wall behind them. Raises InvalidInput for a mesh without area or with more than
+    10 million triangles.
+    
+    Keyword options:
+        rays: int = 30  # rays from the middle of each face
+        cone: float = 2.0943951023931953  # full angle of their cone around the inward normal [rad]
+        outlier: float = 1.0  # standard deviations from the median beyond which rays are left out
+        ray_lengths: bool = False  # P1's mean length of the rays, not the width between the surfaces
+        max_clusters: int = 8  # most Gaussians over the logarithms of the diameters
+        smoothing: float = 0.3  # cost of a border between clusters beside faces in the wrong one
+        crease: float = 0.6  # edges that bend inwards by more part segments [rad]
+        min_size: float = 0.02  # narrower segments join a neighbour, as a share of the mesh's diagonal
+        convexity: float = 0.05  # segments join when their hull has at most this share of the smaller one's volume in neither
+        smooth_threads: bool = True  # screw threads count as the cylinder through their crests
+        faces: int = 20000  # larger faces are cut until there are about so many, for the work alone
+        seed: int = 1  # same seed, same segments
+        threads: int = 0  # 0: all
+    """
 def segment_objects(points: numpy.typing.ArrayLike, normals: numpy.typing.ArrayLike | None = None, *, plane: SupportingPlane | None = None, up: numpy.typing.ArrayLike | None = None, eye: numpy.typing.ArrayLike | None = None, leaf: float = 0.004, plane_tolerance: float = 0.007, up_angle: float = 0.35, min_plane_share: float = 0.15, max_height: float = 0.5, max_beside: float = 0.05, patch: float = 0.02, concavity: float = 0.45, min_points: int = 100, plane_iterations: int = 1000) -> ObjectSegmentation:
     """
     Objects that stand on a plane, also ones that touch: they are parted where the surface has creases (Stein et al.,
@@ -6305,6 +6723,19 @@ def segment_objects(points: numpy.typing.ArrayLike, normals: numpy.typing.ArrayL
 def self_distance_objective(checker: CollisionChecker, margin: float = 0.05, weight: float = 1.0) -> IkObjective:
     """
     Weight times the sum of (1 - distance / margin)^2 over pairs of the robot's own links nearer than `margin` [m].
+    """
+def shape_diameters(mesh: Mesh, *, progress: typing.Any | None = None, rays: int = 30, cone: float = 2.0943951023931953, outlier: float = 1.0, ray_lengths: bool = False, threads: int = 0) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    Local thickness of a mesh at the middle of each face (m,) [m]; 0 where no ray leaves it. The mean over `rays` in a
+    cone around the inward normal, weighted by the cosine of their angle to it, of the distance between the two ends along
+    the mean of their normals: exact in balls, cylinders, plates and tubes (P1, section 5.1, takes the rays' lengths).
+    
+    Keyword options:
+        rays: int = 30  # rays from the middle of each face
+        cone: float = 2.0943951023931953  # full angle of their cone around the inward normal [rad]
+        outlier: float = 1.0  # standard deviations from the median beyond which rays are left out
+        ray_lengths: bool = False  # P1's mean length of the rays, not the width between the surfaces
+        threads: int = 0  # 0: all
     """
 def share_stops(drive_times: numpy.typing.ArrayLike, stop_times: collections.abc.Sequence[float], robots: int) -> SharedTours:
     """

@@ -26,7 +26,8 @@ def build_parser() -> argparse.ArgumentParser:
     parser = _Parser(prog="mmgrasp", description="Planning for mobile manipulators.")
     parser.add_argument("--version", action="version", version=f"mmgrasp {_core.__version__}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="command", parser_class=_Parser)
-    for add in (_add_plan, _add_verify, _add_check, _add_scan, _add_grasp, _add_reproduce, _add_bench, _add_view):
+    adders = (_add_plan, _add_verify, _add_check, _add_scan, _add_grasp, _add_pipe, _add_segment, _add_grippers)
+    for add in (*adders, _add_reproduce, _add_bench, _add_view):
         add(commands)
     return parser
 
@@ -156,6 +157,47 @@ def _add_grasp(commands: Commands) -> None:
     )
     parser.add_argument("--seed", type=_seed, default=1, metavar="N", help="same seed, same grasps")
     parser.add_argument("--json", action="store_true", help="print all grasps as JSON")
+
+
+def _add_pipe(commands: Commands) -> None:
+    parser = commands.add_parser("pipe", help="find the grasp that carries a pipe along a path and bends it least")
+    parser.add_argument("problem", type=str, help="problem file (YAML), or the name of a shipped one (pipe1)")
+    parser.add_argument("-o", "--out", type=_path, required=True, metavar="DIR", help="folder to write into")
+    parser.add_argument(
+        "--algorithm",
+        choices=_core.grasp_search_names(),
+        metavar="NAME",
+        help=f"in place of the problem's: {', '.join(_core.grasp_search_names())} (the last proves its answer)",
+    )
+    parser.add_argument(
+        "--threads", type=_threads, metavar="N", help="0: all (default); the answer does not depend on it"
+    )
+    parser.add_argument("--seed", type=_seed, metavar="N", help="same seed, same grasp")
+    parser.add_argument("--no-pictures", action="store_true", help="leave the pictures out of the report")
+    parser.add_argument("--json", action="store_true", help="print the result as JSON")
+
+
+def _add_segment(commands: Commands) -> None:
+    parser = commands.add_parser(
+        "segment", help="cut a part into the simple bodies it is composed of, and say where it can be held"
+    )
+    parser.add_argument("mesh", type=_path, help="STL, OBJ, PLY or DAE")
+    parser.add_argument("-o", "--out", type=_path, metavar="DIR", help="folder for segments.json and the pictures")
+    parser.add_argument(
+        "--unit", choices=["m", "cm", "mm", "inch"], default="m", help="what one unit of the file is (default m)"
+    )
+    parser.add_argument("--seed", type=_seed, default=1, metavar="N", help="same seed, same segments")
+    parser.add_argument("--threads", type=_threads, default=0, metavar="N", help="0: all (default)")
+    parser.add_argument("--no-pictures", action="store_true", help="leave the pictures out")
+    parser.add_argument("--json", action="store_true", help="print segments.json instead of the table")
+
+
+def _add_grippers(commands: Commands) -> None:
+    parser = commands.add_parser("grippers", help="find the least set of grippers for an assembly, from its meshes")
+    parser.add_argument("assembly", type=str, help="assembly file (YAML), or the name of a shipped one (pulley)")
+    parser.add_argument("-o", "--out", type=_path, required=True, metavar="DIR", help="folder to write into")
+    parser.add_argument("--no-pictures", action="store_true", help="leave the pictures out of the report")
+    parser.add_argument("--json", action="store_true", help="print the result as JSON")
 
 
 def _add_reproduce(commands: Commands) -> None:

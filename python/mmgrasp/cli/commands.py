@@ -34,8 +34,11 @@ from .arguments import build_parser
 from .check import check_robot, describe
 from .console import Reporter, open_streams
 from .grasp import run_grasp
+from .grippers import run_grippers
 from .output_folder import OutputFolder
+from .pipe import run_pipe
 from .scan import run_scan
+from .segment import run_segment
 from .tables import bench_table, drive_by_summary, print_verdict, summary
 
 if TYPE_CHECKING:
@@ -236,6 +239,9 @@ COMMANDS = {
     "check": run_check,
     "scan": run_scan,
     "grasp": run_grasp,
+    "pipe": run_pipe,
+    "segment": run_segment,
+    "grippers": run_grippers,
     "reproduce": run_reproduce,
     "bench": run_bench,
     "view": run_view,

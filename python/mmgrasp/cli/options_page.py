@@ -49,6 +49,12 @@ SECTIONS: tuple[tuple[str, str, Table, set[str]], ...] = (
         set(),
     ),
     (
+        "assembly_grasps",
+        "Grasps of an assembly's parts, keywords of `jaw_grasps` and `centric_grasps` (`AssemblyGraspOptions`)",
+        _core._assembly_grasp_option_table,
+        set(),
+    ),
+    (
         "minimal_grippers",
         "The least set of grippers, keywords (`MinimalGrippersOptions`)",
         _core._minimal_grippers_option_table,
@@ -105,6 +111,18 @@ SECTIONS: tuple[tuple[str, str, Table, set[str]], ...] = (
         "segment_objects",
         "Objects on a plane, keywords also of `segment_depth_image` (`ObjectSegmentationOptions`)",
         _core._segmentation_option_table,
+        set(),
+    ),
+    (
+        "segment_mesh",
+        "Segments of a part, keywords of `segment_mesh` (`MeshSegmentationOptions`)",
+        _core._mesh_segmentation_option_table,
+        set(),
+    ),
+    (
+        "shape_diameters",
+        "Local thickness, keywords of `shape_diameters` (`ShapeDiameterOptions`)",
+        _core._shape_diameter_option_table,
         set(),
     ),
 )

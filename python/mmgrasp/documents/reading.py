@@ -160,15 +160,15 @@ class Node:
         return [self.child(i) for i in range(len(self.raw))]
 
     # --- scalars --------------------------------------------------------------------------------------------------
-    def number(self, *, above: float | None = None, least: float | None = None) -> float:
+    def number(self, *, above: float | None = None, least: float | None = None, most: float = LARGEST) -> float:
         """A finite number within bounds."""
         value = self.raw
         if isinstance(value, bool) or not isinstance(value, int | float):
             self.fail("must be a number")
         if isinstance(value, float) and not math.isfinite(value):
             self.fail("must be finite")
-        if not -LARGEST <= value <= LARGEST:
-            self.fail(f"must lie between -{LARGEST:g} and {LARGEST:g}")
+        if not -most <= value <= most:
+            self.fail(f"must lie between -{most:g} and {most:g}")
         if above is not None and not value > above:
             self.fail(f"must be > {above:g}")
         if above == 0 and value < SMALLEST:

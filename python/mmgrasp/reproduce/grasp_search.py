@@ -71,7 +71,7 @@ def run_weights(context: Context) -> Result:
     count = 2000 if context.quick else 50_000
     for order, printed in RANDOM_INDEX.items():
         result.row({"": f"random index, m = {order}"})["value"] = (printed, random_index(order, count, context.seed))
-    found = pairwise_weights(COMPARISON)
+    found = pairwise_weights(np.array(COMPARISON))
     for name, printed, ours in zip(("O1", "O2", "O3"), (0.56, 0.12, 0.32), found.weights, strict=True):
         result.row({"": f"weight of {name}"})["value"] = (printed, float(ours))
     result.row({"": "consistency ratio [%]"})["value"] = (0.79, 100 * found.consistency_ratio)

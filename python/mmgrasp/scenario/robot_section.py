@@ -41,7 +41,8 @@ class RobotSections:
 
     robot: Node
     gripper: Node
-    place_region: Node
+    place_region: Node | None
+    """None: a profile of an arm alone."""
 
 
 def find_file(node: Node) -> Path:
@@ -98,15 +99,18 @@ def choose_sections(root: Node, robot_name: str | None) -> RobotSections:
     profile = _profile_sections(read_yaml(profile_path(robot_name)).root)
     if replaced:
         return profile
-    pick = {key: root[key] if key in root else getattr(profile, key) for key in ("gripper", "place_region")}
-    return RobotSections(profile.robot, pick["gripper"], pick["place_region"])
+    gripper = root["gripper"] if "gripper" in root else profile.gripper
+    return RobotSections(
+        profile.robot, gripper, root["place_region"] if "place_region" in root else profile.place_region
+    )
 
 
 def _profile_sections(profile: Node) -> RobotSections:
     profile["format"].choice("mmgrasp-robot")
     profile.read_version(3, RENAMED)
-    profile.mapping("format version robot gripper place_region")
-    return RobotSections(profile["robot"], profile["gripper"], profile["place_region"])
+    profile.mapping("format version robot gripper", "place_region")
+    place_region = profile["place_region"] if "place_region" in profile else None
+    return RobotSections(profile["robot"], profile["gripper"], place_region)
 
 
 def read_gripper(source: str) -> Hand:
@@ -123,6 +127,8 @@ def read_gripper(source: str) -> Hand:
 def read_setup(sections: RobotSections, progress: Progress = None) -> RobotSetup:
     """Composes the robot, finds which of its links can never touch, and sets up its arm, gripper and bin."""
     node = sections.robot.mapping("urdf group tool_link home", ROBOT_KEYS)
+    if sections.place_region is None:
+        node.fail("a part-supply round needs a place_region, which this robot's profile does not have")
     robot = _compose(node)
     tool_link = node["tool_link"].string()
     _link(robot, node["tool_link"])
@@ -142,6 +148,35 @@ def read_setup(sections: RobotSections, progress: Progress = None) -> RobotSetup
     speed = sections.gripper["closing_speed"].number(above=0) if "closing_speed" in sections.gripper else 0.1
     place_region = _read_place_region(sections.place_region, bin_pose)
     return RobotSetup(robot, arm, gripper, place_region, home, other, speed)
+
+
+@dataclass
+class ArmSetup:
+    """A robot that needs no bin: an arm, where its other joints stand, and its gripper."""
+
+    robot: Robot
+    arm: JointGroup
+    gripper: Hand
+
+
+def read_arm(root: Node, progress: Progress = None) -> ArmSetup:
+    """The sections `robot` and `gripper` of a file: an arm or an arm on a base, and its gripper; `robot: {name: ...}` takes a profile's."""
+    own = root["robot"]
+    if "name" in own:
+        own.mapping("name")
+        profile = _profile_sections(read_yaml(profile_path(own["name"].string())).root)
+        node, hand = profile.robot, root["gripper"] if "gripper" in root else profile.gripper
+    else:
+        node, hand = own, root["gripper"]
+    node.mapping("urdf group tool_link", ROBOT_KEYS)
+    robot = _compose(node)
+    tool_link = node["tool_link"].string()
+    _link(robot, node["tool_link"])
+    gripper = _read_gripper(hand, robot, tool_link)
+    robot = _core.with_sampled_pairs(robot, progress=progress)
+    other = {name: _joint_value(robot, name, value) for name, value in _named_numbers(node, "joints")}
+    arm = _read_group(robot, node["group"], tool_link).with_reference({**other, **gripper.joint_values(0.0)})
+    return ArmSetup(robot, arm, gripper)
 
 
 def _compose(node: Node) -> Robot:

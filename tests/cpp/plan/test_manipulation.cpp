@@ -219,6 +219,51 @@ TEST(PrmStarMg, ARoadmapInPiecesIsAWarning) {
 }
 
 /// The stages of each planner, in turn: each better path says which of them found it, and the statistics sum it up.
+/// Held against each grasp planned by itself on the same roadmap.
+TEST(ManipulationLength, TheCheapestGraspAmongTheShortEnoughIsTaken) {
+  ManipulationProblem problem = test::bar_transfer();
+  for (std::size_t i = 0; i < problem.grasps.size(); ++i) problem.grasps[i].cost = 0.1 * ((7 * i + 3) % 20);
+  const ManipulationOptions options = bar_options();
+  const Roadmap roadmap = Roadmap::build(problem.group, options.prm.roadmap);
+  std::vector<double> lengths;
+  for (const Grasp& grasp : problem.grasps) {
+    ManipulationProblem alone = problem;
+    alone.grasps = {grasp};
+    alone.grasps[0].cost = 0;
+    const ManipulationResult found = plan_manipulation(alone, options, &roadmap);
+    lengths.push_back(found.path ? found.cost : std::numeric_limits<double>::infinity());
+  }
+  std::vector<double> sorted = lengths;
+  std::sort(sorted.begin(), sorted.end());
+  // Inverse kinematics of this arm is iterative: lengths repeat to its tolerance.
+  for (const double most : {sorted[0] + 1e-3, (sorted[2] + sorted[3]) / 2, (sorted[5] + sorted[6]) / 2, 100.0}) {
+    ManipulationOptions within = options;
+    within.max_length = most;
+    int best = -1;
+    for (int i = 0; i < 20; ++i) {
+      if (lengths[i] <= most && (best < 0 || problem.grasps[i].cost < problem.grasps[best].cost)) best = i;
+    }
+    const ManipulationResult found = plan_manipulation(problem, within, &roadmap);
+    ASSERT_EQ(found.outcome, Outcome::solved) << most << " of " << sorted[0];
+    EXPECT_EQ(found.grasp_index, best) << most;
+    EXPECT_NEAR(found.cost, lengths[best] + problem.grasps[best].cost, 1e-3);
+    EXPECT_NEAR(found.path->length() + problem.grasps[best].cost, found.cost, 1e-9);
+    EXPECT_LE(found.lower_bound, found.cost);
+    EXPECT_EQ(found.improvements.back().grasp, best);
+    const ManipulationResult without = plan_manipulation(problem, within);
+    EXPECT_EQ(without.grasp_index, best) << most;
+  }
+  ManipulationOptions none = options;
+  none.max_length = 0.9 * sorted[0];
+  const ManipulationResult found = plan_manipulation(problem, none, &roadmap);
+  EXPECT_EQ(found.outcome, Outcome::not_found);
+  EXPECT_FALSE(found.path);
+  EXPECT_EQ(found.grasp_index, -1);
+  ASSERT_FALSE(found.warnings.empty());
+  none.max_length = -1;
+  EXPECT_THROW(plan_manipulation(problem, none, &roadmap), InvalidInput);
+}
+
 TEST(ManipulationStages, SayWhatTheyFoundAndWhen) {
   ManipulationOptions options = bar_options();
   ManipulationProblem problem = test::bar_transfer();

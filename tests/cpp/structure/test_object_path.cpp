@@ -215,6 +215,42 @@ TEST(ObjectPath, OneEvaluatorAnswersAsManyDo) {
   }
 }
 
+/// Of each grasp the pose that bends it most, by itself; a limit between two of those tells them apart.
+TEST(ObjectPath, LimitsOfSagAndStressAreThoseOfTheFrame) {
+  ObjectPathProblem problem = arc(6, false);
+  const ObjectPathProblem free = problem;
+  ObjectPathEvaluator plain(free);
+  for (BeamMember& member : problem.frame->members) member.material.stress_limit = 8e6;
+  ObjectPathOptions options;
+  options.max_sag = 1.5e-3;
+  ObjectPathEvaluator limited(problem, options);
+  int good = 0, bent = 0, stressed = 0;
+  for (const Grasp& grasp : some_grasps(60)) {
+    const ObjectPathResult before = plain.evaluate(grasp), after = limited.evaluate(grasp);
+    const SupportedFrame held(*problem.frame, {beam_support(grasp)});
+    std::vector<int> over;
+    for (int i = 0; i < 6; ++i) {
+      const BeamState state = held.state(gravity_in_object(problem.T_world_object[i]));
+      const bool sags = state.displacement.value > options.max_sag, yields = state.stress->value > 8e6;
+      if (sags || yields) over.push_back(i);
+      bent += sags;
+      stressed += yields;
+    }
+    EXPECT_EQ(after.overloaded, over);
+    EXPECT_EQ(after.violations, before.violations);
+    EXPECT_EQ(after.outcome == Outcome::solved, before.outcome == Outcome::solved && over.empty());
+    if (!over.empty()) {
+      EXPECT_GE(after.violation, static_cast<int>(over.size()));
+    } else if (after.outcome == Outcome::solved) {
+      EXPECT_NEAR(after.cost, before.cost, 1e-12 * before.cost);
+      ++good;
+    }
+  }
+  EXPECT_GT(good, 0);
+  EXPECT_GT(bent, 0);
+  EXPECT_GT(stressed, 0);
+}
+
 TEST(ObjectPath, RefusesBadProblems) {
   ObjectPathProblem problem = arc(3);
   problem.T_world_object.resize(1);
@@ -231,6 +267,11 @@ TEST(ObjectPath, RefusesBadProblems) {
   EXPECT_NO_THROW(follow_object_path(problem, Grasp{}));
   ObjectPathOptions options;
   options.motion_weight = -1;
+  EXPECT_THROW(follow_object_path(problem, grasp_at(0, 0.1, 0), options), InvalidInput);
+  options = {};
+  options.max_sag = -1e-3;
+  EXPECT_THROW(follow_object_path(problem, grasp_at(0, 0.1, 0), options), InvalidInput);
+  options.max_sag = 1e-3;  // and the problem says nothing of how it bends
   EXPECT_THROW(follow_object_path(problem, grasp_at(0, 0.1, 0), options), InvalidInput);
   options = {};
   options.deflection_scale = 0;

@@ -27,6 +27,7 @@ struct MMGRASP_EXPORT MinimalGrippersOptions {
   double longest_finger = 0.5;    ///< No finger is longer [m], >= shortest_finger.
   double opening_margin = 0;      ///< Stroke kept free beyond the part at either end [m], >= 0; less than half of it.
   double length_margin = 0;       ///< Kept from either limit of the finger length [m], >= 0.
+  double finger_width = 0.015, finger_thickness = 0.008;  ///< Of the grippers returned [m], > 0.
   /// Cost of changing the gripper between two operations, >= 0. At 0 changes cost nothing, but of all cheapest sets one
   /// with the fewest changes is taken.
   double change_cost = 0;

@@ -70,6 +70,10 @@ struct MMGRASP_EXPORT ManipulationOptions {
   bool straight = true;
   EdgeOptions edge{0.02, 0.005, false, 1e-4};  ///< Steps of edge checks.
   IkOptions ik;
+  /// Above zero the grasps' costs decide: of the grasps with which a path no longer than this was found, the answer has
+  /// the one of least cost. Zero: length and cost count together. For pipes whose grasps cost their sag, the one that
+  /// sags least among those whose motion is short enough. >= 0, `rrt.goal_cost` must be zero then.
+  double max_length = 0;
   double time_limit = 15;  ///< Wall-clock cap on IK and search together, without the roadmap's building [s]; > 0.
   unsigned seed = 1;       ///< Same seed, same path, as long as the time limit does not end the run.
   int threads = 0;         ///< 0: all; does not change the answer.

@@ -53,6 +53,7 @@ struct MMGRASP_EXPORT ObjectPathOptions {
   bool all_turns = true;      ///< Joints that may turn more than once come in every turn.
   int redundant_values = 0;   ///< Samples of a seventh joint; 0: as solve_ik_branches. >= 0.
   double gravity = kGravity;  ///< Along the world's -z [m/s2]; >= 0.
+  double max_sag = 0;         ///< At each pose the object may bend by no more than this [m]; 0: as it likes. >= 0.
   void check() const;
 };
 
@@ -65,8 +66,11 @@ struct MMGRASP_EXPORT ObjectPathResult {
   double force_manipulability = 0;       ///< O3
   JointPath path;                        ///< One configuration for each pose; only when solved.
   std::vector<double> sag;               ///< Largest displacement at each pose [m]; the first is not part of O2.
-  /// Cost(C) of P2 3.3.1: the sum of `violations`, or, when all are zero, the number of gaps that no allowed motion
-  /// bridges. Zero if and only if solved.
+  /// Poses at which the object bends by more than `max_sag`, or bears more stress than its material's limit where one
+  /// is given.
+  std::vector<int> overloaded;
+  /// Cost(C) of P2 3.3.1: the sum of `violations` and one for each pose of `overloaded`, or, when all that is zero, the
+  /// number of gaps that no allowed motion bridges. Zero if and only if solved.
   int violation = 0;
   /// Of each pose: 2 when no arm configuration reaches it, 1 when all that do collide, else 0.
   std::vector<int> violations;

@@ -64,7 +64,12 @@ struct MMGRASP_EXPORT GraspOptimum {
   /// Poses in order, each with how many of the grasps tried could not reach it and at how many all arm configurations
   /// collided.
   std::vector<int> unreachable, colliding;
+  std::vector<int> overloaded;  ///< Of each pose: with how many of them the pipe bends or bears more than it may there.
 };
+
+/// The feasible grasps, each with its mean sag after the first pose [m] as its cost: for plan_manipulation with
+/// ManipulationOptions::max_length, which takes the one that sags least among those whose motion is short enough.
+MMGRASP_EXPORT std::vector<Grasp> sag_candidates(const GraspOptimum& optimum);
 
 /// Searches the grasps of a pipe (section, length, angle, flip) for the one with the least Cost(O) along the path, by
 /// P2's rules of comparison (3.3.1, Algorithm 3.2). Throws InvalidInput when no section is narrow and long enough for

@@ -84,7 +84,7 @@ struct Grid {
 template <class Contains>
 std::vector<Points> cell_points(const TriangleMesh& mesh, const Grid& grid, const Contains& contains) {
   const auto& n = grid.count;
-  std::vector<Points> cells(static_cast<std::size_t>(n[0] * n[1] * n[2]));
+  std::vector<Points> cells(n[0] * n[1] * n[2]);
   const auto cell = [&](int i, int j, int k) -> Points& { return cells[(i * n[1] + j) * n[2] + k]; };
   Points polygon, scratch;
   for (const auto& t : mesh.triangles) {

@@ -22,7 +22,7 @@ void EdgeMotion::start(const Placement& placement, const Eigen::VectorXd& q0, co
   }
   MotionBounds::squares(magnitude_, half_squares_);
   half_squares_ *= 0.5;
-  velocities_.resize(static_cast<std::size_t>(bounds.tree().frames));
+  velocities_.resize(bounds.tree().frames);
 }
 
 Closing EdgeMotion::of_body(int body, double reach) {

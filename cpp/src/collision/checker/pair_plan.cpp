@@ -86,7 +86,7 @@ void PairPlan::sort_shapes(const Snapshot& snapshot, const JointGroup& group) {
   for (const auto* shapes : {&moving, &fixed}) {
     for (const int s : *shapes) sphere_of[s] = sphere++;
   }
-  spheres.resize(static_cast<std::size_t>(sphere));
+  spheres.resize(sphere);
 }
 
 void PairPlan::place_shape(const Snapshot& snapshot, int s) {

@@ -71,11 +71,11 @@ std::vector<char> are_free(const CollisionChecker& checker, const Eigen::MatrixX
     if (!Q.col(i).allFinite()) checker.group().check_configuration(Q.col(i), "Q column " + std::to_string(i) + " q");
   }
   constexpr Eigen::Index kBlock = 64;
-  const auto blocks = static_cast<std::size_t>((Q.cols() + kBlock - 1) / kBlock);
+  const std::size_t blocks = (Q.cols() + kBlock - 1) / kBlock;
   const int workers = std::min(resolve_threads(threads), std::max(1, static_cast<int>(blocks)));
   std::vector<CollisionChecker> checkers;
   for (int i = 0; i < workers; ++i) checkers.push_back(checker.clone());
-  std::vector<char> free(static_cast<std::size_t>(Q.cols()));
+  std::vector<char> free(Q.cols());
   parallel_for(blocks, workers, [&](std::size_t block, int worker) {
     const Eigen::Index first = static_cast<Eigen::Index>(block) * kBlock;
     Eigen::VectorXd q(Q.rows());

@@ -159,7 +159,7 @@ class PcdReader {
   void read_viewpoint(const std::vector<std::string_view>& words) {
     double v[7];
     bool ok = words.size() == 8;
-    for (int i = 0; ok && i < 7; ++i) ok = detail::parse_number(words[static_cast<std::size_t>(i) + 1], v[i]);
+    for (int i = 0; ok && i < 7; ++i) ok = detail::parse_number(words[i + 1], v[i]);
     for (int i = 0; ok && i < 7; ++i) ok = std::isfinite(v[i]) && std::abs(v[i]) < 1e12;
     if (!ok) fail("VIEWPOINT: must be seven numbers (position, quaternion w x y z)");
     const Eigen::Quaterniond turn(v[3], v[4], v[5], v[6]);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "grasp/hand/finger_shapes.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/geometry/ray_caster.hpp"
 #include "mmgrasp/grasp/eigengrasp.hpp"
@@ -113,7 +114,7 @@ class JointedHand final : public HandModel {
   void find_pads() {
     const std::vector<double> half(closing_.size(), 0.5);
     for (int group = 0; group < groups(); ++group) {
-      for (const int link : tips_of(closing_[static_cast<std::size_t>(group)])) {
+      for (const int link : tips_of(closing_[group])) {
         // A joint that spreads fingers belongs to a group of its own; their own group makes the pad.
         if (std::find(pad_link_.begin(), pad_link_.end(), link) != pad_link_.end()) continue;
         link_pads_.push_back(inner_face(link, group, half));
@@ -128,7 +129,7 @@ class JointedHand final : public HandModel {
   /// In the link's frame.
   FingerPad inner_face(int link, int group, const std::vector<double>& half) const {
     std::vector<double> closer = half;
-    closer[static_cast<std::size_t>(group)] -= kShareStep;
+    closer[group] -= kShareStep;
     const Pose now = in_tool_frame(half)[link], then = in_tool_frame(closer)[link];
     TriangleMesh all;
     for (const LinkShape& shape : robot_.links()[link].collisions) {
@@ -148,7 +149,7 @@ class JointedHand final : public HandModel {
     normal.normalize();
     const Vector3d side = normal.cross(along);
     const auto extent = [&](const Vector3d& axis) {
-      double low = std::numeric_limits<double>::infinity(), high = -low;
+      double low = detail::kInfinity, high = -low;
       for (const Vector3d& v : all.vertices) {
         low = std::min(low, axis.dot(v));
         high = std::max(high, axis.dot(v));

@@ -97,7 +97,7 @@ PatchState fit_contact_patch(const SdfHits& hits, const Vector3d& pad_normal, do
   patch.pad_normal = pad_normal;
   patch.nearest = detail::kInfinity;
   for (Eigen::Index i = 0; i < hits.distance.size(); ++i) {
-    if (!hits.hit[static_cast<std::size_t>(i)] || hits.distance[i] > reach) continue;
+    if (!hits.hit[i] || hits.distance[i] > reach) continue;
     points.push_back(hits.point.col(i));
     rays.push_back(i);
     patch.nearest = std::min(patch.nearest, hits.distance[i]);

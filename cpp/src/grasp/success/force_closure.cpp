@@ -22,7 +22,7 @@ double non_negative_residual(const MatrixXd& A, const VectorXd& b) {
   const Eigen::Index n = A.cols();
   VectorXd x = VectorXd::Zero(n);
   std::vector<Eigen::Index> active;  // columns that may be positive
-  std::vector<char> is_active(static_cast<std::size_t>(n), 0);
+  std::vector<char> is_active(n, 0);
   for (Eigen::Index round = 0; round < 3 * n; ++round) {
     const VectorXd residual = b - A * x, gradient = A.transpose() * residual;
     Eigen::Index best = -1;

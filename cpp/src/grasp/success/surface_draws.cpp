@@ -39,7 +39,7 @@ class SmoothField {
 SdfHits moved(const SdfHits& mean, const Eigen::Matrix3Xd& directions, const SmoothField& field) {
   SdfHits hits = mean;
   for (Eigen::Index i = 0; i < hits.distance.size(); ++i) {
-    if (!hits.hit[static_cast<std::size_t>(i)]) continue;
+    if (!hits.hit[i]) continue;
     const Vector3d direction = directions.col(i), point = mean.point.col(i);
     const double slope = std::max(kLeastSlope, -direction.dot(mean.normal.col(i)));
     // A larger distance everywhere means a surface farther away.

@@ -107,7 +107,7 @@ class Search {
     // The surface point itself is no opposite wall.
     const double thinnest = std::max(evaluator_.smallest_opening(), 2 * map_.options().voxel);
     for (int k = 0; k < 2; ++k) {
-      if (!hits.hit[static_cast<std::size_t>(k)]) continue;
+      if (!hits.hit[k]) continue;
       width = (k == 0 ? most : beyond) - hits.distance[k];
       if (width > most) {
         ++counts.too_wide;

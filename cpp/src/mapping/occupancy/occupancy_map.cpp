@@ -174,7 +174,7 @@ OccupancyReport OccupancyMap::integrate(const DepthImage& image, const DepthCame
 
 std::vector<Occupancy> OccupancyMap::states(const Eigen::Matrix3Xd& points) const {
   std::vector<Occupancy> out;
-  out.reserve(static_cast<std::size_t>(points.cols()));
+  out.reserve(points.cols());
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
     if (!points.col(i).allFinite()) throw InvalidInput("point " + std::to_string(i) + ": must be finite");
     const Eigen::Vector3d cell = (points.col(i) / impl_->options.resolution).array().floor() + kHalf;

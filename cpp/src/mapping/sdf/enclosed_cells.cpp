@@ -23,7 +23,7 @@ class Axis {
     places_.push_back(kNone);
   }
   int size() const { return static_cast<int>(places_.size()); }
-  int key(int place) const { return places_[static_cast<std::size_t>(place)]; }
+  int key(int place) const { return places_[place]; }
 
  private:
   std::vector<int> places_;
@@ -67,7 +67,7 @@ class Flood {
     const BlockKey key{axes_[0].key(p.at[0]), axes_[1].key(p.at[1]), axes_[2].key(p.at[2])};
     if (key.x == Axis::kNone || key.y == Axis::kNone || key.z == Axis::kNone) return -1;
     const int block = cells_.find(key);
-    return block >= 0 && has_occupied(cells_.blocks[static_cast<std::size_t>(block)]) ? block : -1;
+    return block >= 0 && has_occupied(cells_.blocks[block]) ? block : -1;
   }
 
   void visit_whole(const Place& p) {

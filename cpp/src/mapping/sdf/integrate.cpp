@@ -161,7 +161,7 @@ class FrameIntegration {
     const int threads = grid_.options.threads;
     const auto items = [](std::size_t count) { return (count + kBlocksOfItem - 1) / kBlocksOfItem; };
     // New blocks are tried on a spare one: most candidates turn out to lie beside the surface.
-    std::vector<std::unique_ptr<VoxelBlock>> spare(static_cast<std::size_t>(resolve_threads(threads)));
+    std::vector<std::unique_ptr<VoxelBlock>> spare(resolve_threads(threads));
     parallel_for(items(work_.size()), threads, [&](std::size_t item, int worker) {
       const std::size_t last = std::min(work_.size(), (item + 1) * kBlocksOfItem);
       for (std::size_t i = item * kBlocksOfItem; i < last; ++i) update_candidate(kernel, work_[i], spare[worker]);

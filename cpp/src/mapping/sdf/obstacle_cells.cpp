@@ -132,7 +132,7 @@ void fill_unknown(CellBlocks& cells, const CellRange& range, Leaves& leaves) {
           leaves.add(key, inside);
           continue;
         }
-        CellBlock& known = cells.blocks[static_cast<std::size_t>(block)];
+        CellBlock& known = cells.blocks[block];
         for (int k = 0; k < kBlockSide; ++k) known.occupied[k] |= inside[k] & ~known.clear[k];
       }
     }

@@ -72,7 +72,7 @@ SdfValues ProbabilisticSdf::query(const Eigen::Matrix3Xd& points, int threads) c
   SdfValues out;
   out.mean.resize(points.cols());
   out.sigma.resize(points.cols());
-  out.known.resize(static_cast<std::size_t>(points.cols()));
+  out.known.resize(points.cols());
   by_pieces(points.cols(), kPointsOfItem, threads, [&](Eigen::Index first, Eigen::Index last) {
     // Points in any order miss the cache: they are fetched some points ahead.
     constexpr Eigen::Index kAhead = 12;
@@ -82,7 +82,7 @@ SdfValues ProbabilisticSdf::query(const Eigen::Matrix3Xd& points, int threads) c
       const detail::Sample sample = sampler.at(points.col(i));
       out.mean[i] = sample.known ? sample.mean : kNaN;
       out.sigma[i] = sample.known ? std::sqrt(sample.variance) : kNaN;
-      out.known[static_cast<std::size_t>(i)] = sample.known;
+      out.known[i] = sample.known;
     }
   });
   return out;
@@ -99,7 +99,7 @@ SdfHits ProbabilisticSdf::cast_rays(const Eigen::Matrix3Xd& origins, const Eigen
   }
   const Eigen::Index count = origins.cols();
   SdfHits out;
-  out.hit.assign(static_cast<std::size_t>(count), 0);
+  out.hit.assign(count, 0);
   out.distance.setConstant(count, kNaN);
   out.point.setConstant(3, count, kNaN);
   out.normal.setConstant(3, count, kNaN);
@@ -113,7 +113,7 @@ SdfHits ProbabilisticSdf::cast_rays(const Eigen::Matrix3Xd& origins, const Eigen
       const Eigen::Vector3d point = origins.col(i) + t * directions.col(i);
       Eigen::Vector3d normal = sampler.direction(point);
       if (normal.isZero(0)) normal = -directions.col(i).normalized();  // at the rim of what was seen
-      out.hit[static_cast<std::size_t>(i)] = 1;
+      out.hit[i] = 1;
       out.distance[i] = t;
       out.point.col(i) = point;
       out.normal.col(i) = normal;
@@ -139,7 +139,7 @@ SdfPoints ProbabilisticSdf::points() const {
   out.point.resize(3, count);
   out.normal.setZero(3, count);
   out.sigma = Eigen::Map<const Eigen::VectorXd>(surface.sigma.data(), count);
-  for (Eigen::Index i = 0; i < count; ++i) out.point.col(i) = vertices[static_cast<std::size_t>(i)];
+  for (Eigen::Index i = 0; i < count; ++i) out.point.col(i) = vertices[i];
   // Normals of the triangles around, weighted by their areas.
   for (const auto& t : surface.mesh->triangles) {
     const Eigen::Vector3d normal = (vertices[t[1]] - vertices[t[0]]).cross(vertices[t[2]] - vertices[t[0]]);

@@ -27,7 +27,7 @@ class ObjectSegmenter {
   ObjectSegmenter(const Matrix3Xd& points, const Matrix3Xd& normals, const ObjectSegmentationOptions& options,
                   const Vector3d& eye)
       : points_(points), normals_(normals), options_(options), eye_(eye) {
-    out_.labels.assign(static_cast<std::size_t>(points.cols()), -2);
+    out_.labels.assign(points.cols(), -2);
     for (int i = 0; i < points.cols(); ++i) {
       if (!points.col(i).allFinite()) continue;
       const std::string field = "points[" + std::to_string(i) + "]";

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "mapping/segmentation/surface_cells.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
 
 namespace mmgrasp::detail {
 namespace {
@@ -37,7 +38,7 @@ struct Moments {
 
 struct LocalPlane {
   Vector3d mean = Vector3d::Zero(), normal = Vector3d::Zero();
-  double residual = std::numeric_limits<double>::infinity();  ///< Root mean square distance [m].
+  double residual = detail::kInfinity;  ///< Root mean square distance [m].
 };
 
 class NormalFitter {

@@ -44,7 +44,7 @@ class Genetic : public PopulationSearch {
       while (static_cast<int>(next.size()) < run.options.population && !run.done()) {
         Eigen::VectorXd a = winner(run, parents).x, b = winner(run, parents).x;
         if (run.size() > 1) {
-          const auto cut = 1 + static_cast<Eigen::Index>(run.rng.index(static_cast<std::size_t>(run.size() - 1)));
+          const auto cut = 1 + static_cast<Eigen::Index>(run.rng.index(run.size() - 1));
           a.tail(a.size() - cut).swap(b.tail(b.size() - cut));
         }
         for (Eigen::VectorXd* child : {&a, &b}) {

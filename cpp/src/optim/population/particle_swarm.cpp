@@ -22,7 +22,7 @@ class ParticleSwarm : public PopulationSearch {
  private:
   /// Itself and as many others as the connectivity says (truncated, as in P2), drawn once.
   static std::vector<std::size_t> neighbours_of(Run& run, std::size_t own) {
-    const auto count = static_cast<std::size_t>(run.options.population);
+    const std::size_t count = run.options.population;
     std::vector<std::size_t> others(count);
     std::iota(others.begin(), others.end(), 0);
     std::swap(others[0], others[own]);

@@ -143,7 +143,7 @@ class Solver {
     const std::vector<double> reduced = detail::reduced_costs(problem, priced.prices);
     const double bound = detail::bound_by_prices(problem, priced.prices);
     const double wanted = detail::all_integral(problem.costs) ? priced.cost - 1 : priced.cost;
-    std::vector<int> useful, elements(static_cast<std::size_t>(problem.elements));
+    std::vector<int> useful, elements(problem.elements);
     std::iota(elements.begin(), elements.end(), 0);
     for (int s = 0; s < static_cast<int>(problem.sets.size()); ++s) {
       if (bound + std::max(0.0, reduced[s]) <= wanted + 1e-9 * priced.cost) useful.push_back(s);

@@ -100,7 +100,7 @@ void load(const SetCoverProblem& problem, OsiClpSolverInterface& solver) {
     rows.insert(rows.end(), set.begin(), set.end());
     starts.push_back(static_cast<int>(rows.size()));
   }
-  const auto elements = static_cast<std::size_t>(problem.elements);
+  const std::size_t elements = problem.elements;
   const std::vector<double> ones(rows.size(), 1.0), lower(problem.sets.size(), 0.0), upper(problem.sets.size(), 1.0);
   const std::vector<double> row_lower(elements, 1.0);
   // No row bound from above is needed; the number of columns is never reached in vain and spares CBC an infinity.

@@ -20,7 +20,7 @@ constexpr double kLastStep = 2e-3;
 using Lists = std::vector<std::vector<int>>;
 
 Lists sets_by_element(const SetCoverProblem& problem) {
-  Lists sets_of(static_cast<std::size_t>(problem.elements));
+  Lists sets_of(problem.elements);
   for (std::size_t s = 0; s < problem.sets.size(); ++s) {
     for (int e : problem.sets[s]) sets_of[e].push_back(static_cast<int>(s));
   }
@@ -50,7 +50,7 @@ class Greedy {
     while (open_ > 0) {
       const Entry entry = queue.top();
       queue.pop();
-      const auto s = static_cast<std::size_t>(entry.set);
+      const std::size_t s = entry.set;
       if (missing_[s] == 0) continue;
       const double now = score(s);  // scores only get worse while elements get covered
       if (now > entry.score) {
@@ -75,7 +75,7 @@ class Greedy {
   void take(int set, const std::vector<double>& prices, std::vector<int>& chosen) {
     chosen.push_back(set);
     for (int e : problem_.sets[set]) {
-      const auto i = static_cast<std::size_t>(e);
+      const std::size_t i = e;
       if (times_[i]++ > 0) continue;
       --open_;
       for (int other : sets_of_[i]) {
@@ -172,7 +172,7 @@ void search_covers(const SetCoverProblem& problem, PricedCover& best, int rounds
 
 PricedCover price_set_cover(const SetCoverProblem& problem, int max_steps) {
   const Lists sets_of = sets_by_element(problem);
-  const auto elements = static_cast<std::size_t>(problem.elements);
+  const std::size_t elements = problem.elements;
   const bool integral = all_integral(problem.costs);
   Greedy greedy(problem, sets_of);
   PricedCover best;

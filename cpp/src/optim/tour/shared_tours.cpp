@@ -91,7 +91,7 @@ class Sharing {
   }
 
   std::vector<double> durations_of_subsets(int robot) const {
-    const auto n = static_cast<std::size_t>(n_);
+    const std::size_t n = n_;
     const std::size_t masks = std::size_t{1} << n;
     std::vector<double> ending(masks * n, detail::kInfinity), total(masks, detail::kInfinity);
     total[0] = 0;

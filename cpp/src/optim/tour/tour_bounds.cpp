@@ -27,7 +27,7 @@ double spanning_tree(const Eigen::MatrixXd& lengths, const Eigen::VectorXd& pric
     in[at] = 1;
     Eigen::Index next = -1;
     for (Eigen::Index j = 0; j < n; ++j) {
-      const auto i = static_cast<std::size_t>(j);
+      const std::size_t i = j;
       if (in[i]) continue;
       const double length = lengths(at, j) + prices(at) + prices(j);
       if (length < nearest[i]) {

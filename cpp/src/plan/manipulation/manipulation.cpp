@@ -8,6 +8,7 @@
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/parallel.hpp"
 #include "plan/manipulation/common/manipulation_planner.hpp"
+#include "plan/manipulation/least_grasp_cost.hpp"
 #include "plan/motion/steered_base.hpp"
 #include "plan/roadmap/roadmap_data.hpp"
 
@@ -106,6 +107,8 @@ void ManipulationOptions::check() const {
   require(ik_solutions > 0, "ik_solutions", ik_solutions, "must be > 0");
   require(first_grasps >= 0, "first_grasps", first_grasps, "must be >= 0");
   require(time_limit > 0, "time_limit", time_limit, "must be > 0 [s]");
+  require(std::isfinite(max_length) && max_length >= 0, "max_length", max_length, "must be finite and >= 0");
+  require(max_length == 0 || !(rrt.goal_cost > 0), "goal_cost", rrt.goal_cost, "must be left out with max_length");
   edge.check();
   ik.check();
   prm.check();
@@ -141,6 +144,9 @@ ManipulationResult detail::plan_manipulation_with(const ManipulationPlanner& pla
 ManipulationResult plan_manipulation(const ManipulationProblem& problem, const ManipulationOptions& options,
                                      const Roadmap* roadmap, const Monitor& monitor,
                                      const ImprovementCallback& on_improvement) {
+  if (options.max_length > 0) {
+    return detail::plan_least_grasp_cost(problem, options, roadmap, monitor, on_improvement);
+  }
   return detail::plan_manipulation_with(detail::manipulation_planner(options.planner), problem, options, roadmap,
                                         monitor, on_improvement);
 }

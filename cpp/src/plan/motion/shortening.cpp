@@ -132,7 +132,7 @@ class Shortener {
 
   bool shortcut_one_joint() {
     const auto [a, b] = random_points();
-    const auto joint = static_cast<Eigen::Index>(rng_.index(static_cast<std::size_t>(a.q.size())));
+    const auto joint = static_cast<Eigen::Index>(rng_.index(a.q.size()));
     if (a.edge == b.edge) return false;
     const Waypoints old_stretch = stretch(a, b);
     Waypoints new_stretch = old_stretch;

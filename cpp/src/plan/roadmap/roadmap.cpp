@@ -67,7 +67,7 @@ void Roadmap::Data::near_around(const double* q, int neighbours, std::vector<int
   std::vector<double> image(q, q + vertices.rows());
   metric.wrap(image.data());
   const std::vector<int>& wrapping = metric.wrapping();
-  const auto wanted = static_cast<std::size_t>(std::min<Eigen::Index>(neighbours, vertices.cols()));
+  const std::size_t wanted = std::min<Eigen::Index>(neighbours, vertices.cols());
   const double r = radius();
   std::vector<std::pair<double, int>> found;  // Squared distance and vertex; several times where images share one.
   std::vector<int> hits(wanted);
@@ -122,7 +122,7 @@ void Roadmap::Data::near(const double* q, int neighbours, std::vector<int>& out)
   out.clear();
   if (metric.any()) return near_around(q, neighbours, out);
   if (neighbours > 0) {
-    const auto wanted = static_cast<std::size_t>(std::min<Eigen::Index>(neighbours, vertices.cols()));
+    const std::size_t wanted = std::min<Eigen::Index>(neighbours, vertices.cols());
     out.resize(wanted);
     std::vector<double> squared(wanted);
     out.resize(tree->knnSearch(q, wanted, out.data(), squared.data()));
@@ -138,7 +138,7 @@ void Roadmap::Data::near(const double* q, int neighbours, std::vector<int>& out)
 }
 
 bool Roadmap::Data::join(detail::CancelCheck& cancel, int threads) {
-  const auto count = static_cast<std::size_t>(vertices.cols());
+  const std::size_t count = vertices.cols();
   // With a fixed number of neighbours the vertex itself is its nearest one.
   std::vector<std::vector<int>> joined(count);
   const int wanted = neighbours() > 0 ? neighbours() + 1 : 0;
@@ -166,11 +166,11 @@ bool Roadmap::Data::join(detail::CancelCheck& cancel, int threads) {
 }
 
 bool Roadmap::Data::make_arcs(detail::CancelCheck& cancel) {
-  const auto count = static_cast<std::size_t>(vertices.cols());
+  const std::size_t count = vertices.cols();
   first.assign(count + 1, 0);
   for (const auto& [a, b] : ends) {
-    ++first[static_cast<std::size_t>(a) + 1];
-    ++first[static_cast<std::size_t>(b) + 1];
+    ++first[a + 1];
+    ++first[b + 1];
   }
   std::partial_sum(first.begin(), first.end(), first.begin());
   arcs.resize(2 * ends.size());
@@ -187,7 +187,7 @@ bool Roadmap::Data::make_arcs(detail::CancelCheck& cancel) {
 }
 
 void Roadmap::Data::count_components() {
-  const auto count = static_cast<std::size_t>(vertices.cols());
+  const std::size_t count = vertices.cols();
   components = largest_component = 0;
   std::vector<char> seen(count, 0);
   std::vector<std::size_t> stack;
@@ -202,7 +202,7 @@ void Roadmap::Data::count_components() {
       stack.pop_back();
       ++members;
       for (int arc = first[v]; arc < first[v + 1]; ++arc) {
-        const auto to = static_cast<std::size_t>(arcs[arc].to);
+        const std::size_t to = arcs[arc].to;
         if (seen[to]) continue;
         seen[to] = 1;
         stack.push_back(to);
@@ -262,7 +262,7 @@ const Roadmap::Arc* Roadmap::begin(int vertex) const {
   return data_->arcs.data() + data_->first[vertex];
 }
 const Roadmap::Arc* Roadmap::end(int vertex) const {
-  return data_->arcs.data() + data_->first[static_cast<std::size_t>(vertex) + 1];
+  return data_->arcs.data() + data_->first[vertex + 1];
 }
 std::pair<int, int> Roadmap::ends(int edge) const {
   return data_->ends[edge];

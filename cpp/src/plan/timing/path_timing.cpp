@@ -150,7 +150,7 @@ PathTiming::State PathTiming::at(double time) const {
   const auto after = std::upper_bound(times_.begin(), times_.end(), time);
   const auto k =
       std::clamp<std::ptrdiff_t>(after - times_.begin() - 1, 0, static_cast<std::ptrdiff_t>(intervals_.size()) - 1);
-  return state(static_cast<std::size_t>(k), std::clamp(time, times_[k], times_[k + 1]) - times_[k]);
+  return state(k, std::clamp(time, times_[k], times_[k + 1]) - times_[k]);
 }
 
 std::vector<double> PathTiming::jumps(double relative) const {

@@ -207,7 +207,7 @@ class Builder {
 
   /// Reads what earlier sweeps found and writes only afterwards: the order of the work does not matter.
   bool sweep_border(const std::vector<std::size_t>& border, int sweep) {
-    const auto n = static_cast<std::size_t>(arm_.size());
+    const std::size_t n = arm_.size();
     std::vector<std::uint8_t> result(border.size());
     std::vector<std::uint8_t> out_of_reach(border.size());
     std::vector<float> q(border.size() * n);
@@ -239,7 +239,7 @@ class Builder {
   }
 
   void store() {
-    const auto n = static_cast<std::size_t>(arm_.size());
+    const std::size_t n = arm_.size();
     data_.configurations.clear();
     for (std::size_t at = 0; at < state_.size(); ++at) {
       data_.classes[at] = state_[at].cause;

@@ -94,7 +94,7 @@ void ReachDatabase::Data::complete() {
 }
 
 const std::uint16_t* ReachDatabase::Data::stored(std::size_t first, std::size_t end) const {
-  const auto n = static_cast<std::size_t>(joints);
+  const std::size_t n = joints;
   if (configuration_file != nullptr) configuration_file->ensure(2 * n * first, 2 * n * end);
   return configurations.data + n * first;
 }
@@ -192,13 +192,13 @@ std::pair<std::size_t, std::size_t> ReachDatabase::Data::find_cell(const Pose& T
   if (!index || size() == 0) return {0, 0};
   const std::int64_t position = find_position(detail::position_key(*index));
   if (position < 0) return {0, 0};
-  const auto p = static_cast<std::size_t>(position);
+  const std::size_t p = position;
   const auto* begin = rotation_ids.begin() + position_first[p];
   const auto* end = rotation_ids.begin() + position_first[p + 1];
   const std::uint32_t id = rotations.id(T_base_tip.linear());
   const auto* found = std::lower_bound(begin, end, id);
   if (found == end || *found != id) return {0, 0};
-  const auto cell = static_cast<std::size_t>(found - rotation_ids.begin());
+  const std::size_t cell = found - rotation_ids.begin();
   return {cell_first[cell], cell_first[cell + 1]};
 }
 

@@ -91,7 +91,7 @@ Eigen::AlignedBox3d ReachDatabase::bounds() const {
 Eigen::VectorXd ReachDatabase::configuration(std::int64_t index) const {
   require(index >= 0 && index < size(), "index", static_cast<double>(index),
           "must lie in [0, " + std::to_string(size()) + ")");
-  const auto i = static_cast<std::size_t>(index);
+  const std::size_t i = index;
   Eigen::VectorXd q(data_->joints);
   data_->arm.decode(data_->stored(i, i + 1), 1, q.data());
   return q;
@@ -100,7 +100,7 @@ Eigen::VectorXd ReachDatabase::configuration(std::int64_t index) const {
 Pose ReachDatabase::tool_pose(std::int64_t index) const {
   require(index >= 0 && index < size(), "index", static_cast<double>(index),
           "must lie in [0, " + std::to_string(size()) + ")");
-  const auto i = static_cast<std::size_t>(index);
+  const std::size_t i = index;
   Pose T;
   data_->arm.tool_poses(data_->stored(i, i + 1), 1, &T);
   return T;

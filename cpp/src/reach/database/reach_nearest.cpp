@@ -171,7 +171,7 @@ struct Query {
 
   void visit(const PositionCell& position, const RotationBounds& bounds, Nearest& nearest) const {
     constexpr std::uint32_t kWorthScanning = 1024;
-    const detail::StoredPose* poses = data.poses_of(static_cast<std::size_t>(position.index));
+    const detail::StoredPose* poses = data.poses_of(position.index);
     if (data.position_first[position.index + 1] - data.position_first[position.index] <= kWorthScanning)
       scan(poses, position, bounds.table(), nearest);
     else
@@ -203,7 +203,7 @@ int ReachDatabase::nearest(const Pose& T_base_tip, int count, Eigen::MatrixXd& o
     if (p + 1 < position_count) query.ask_for(positions[p + 1]);
     query.visit(positions[p], bounds, nearest);
   }
-  const auto joints = static_cast<std::size_t>(data_->joints);
+  const std::size_t joints = data_->joints;
   for (std::size_t i = 0; i < found.size(); ++i)
     data_->arm.decode(data_->configurations.data + found[i].index * joints, 1,
                       out.col(static_cast<Eigen::Index>(i)).data());

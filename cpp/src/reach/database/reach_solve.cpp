@@ -104,7 +104,7 @@ std::vector<std::vector<Eigen::VectorXd>> solve_reach_batch(const ReachDatabase&
   for (int i = 0; checker != nullptr && i < threads; ++i) checkers.push_back(checker->clone());
   std::vector<std::vector<Eigen::VectorXd>> out(T_base_tip.size());
   const auto work = [&](std::size_t item, int worker) {
-    const auto w = static_cast<std::size_t>(worker);
+    const std::size_t w = worker;
     out[item] = solve(ik[w], T_base_tip[item], options, checkers.empty() ? nullptr : &checkers[w]);
   };
   parallel_for(T_base_tip.size(), threads, work, monitor, "inverse kinematics");

@@ -93,7 +93,7 @@ bool ShardSampler::passes_manipulability(int i) const {
 
 void ShardSampler::sample_block(std::int64_t block, const FillTable* full) {
   Rng rng(options_.seed, static_cast<std::uint64_t>(block));
-  const auto joints = static_cast<std::size_t>(arm_.size());
+  const std::size_t joints = arm_.size();
   std::shared_lock<std::shared_mutex> reading;
   if (full != nullptr) reading = full->reading();
   for (std::int64_t left = block_size(block); left > 0; left -= kBatch) {
@@ -159,7 +159,7 @@ void ShardSampler::group(ShardRecords& out) const {
     next[cell] = begin;
     begin += count[cell];
   }
-  const auto joints = static_cast<std::size_t>(arm_.size());
+  const std::size_t joints = arm_.size();
   out.rotation_ids.resize(keys_.size());
   out.configurations.resize(keys_.size() * joints);
   for (std::size_t i = 0; i < keys_.size(); ++i) {

@@ -90,7 +90,7 @@ ShardMerge::ShardMerge(const ShardStore& store, std::int64_t shards, std::uint32
       in_part = 0;
     }
     for (std::int64_t shard = 0; shard < shards; ++shard) {
-      const auto s = static_cast<std::size_t>(shard);
+      const std::size_t s = shard;
       const ShardRecords& directory = store.directory(shard);
       if (cell[s] >= directory.position_keys.size() || directory.position_keys[cell[s]] != key) continue;
       record[s] += directory.counts[cell[s]++];
@@ -114,7 +114,7 @@ MergedCells ShardMerge::merge(std::size_t part) const {
   std::vector<Record> records(total), spare;
   std::size_t at = 0;
   for (std::int64_t shard = 0; shard < shards_; ++shard) {
-    const auto s = static_cast<std::size_t>(shard);
+    const std::size_t s = shard;
     const std::size_t first = records_[part][s], count = records_[part + 1][s] - first;
     if (count == 0) continue;
     store_.read(shard, first, count, &rotations[at], &configurations[at * joints_]);

@@ -115,7 +115,7 @@ bool ShardStore::load(std::int64_t shard) {
 }
 
 void ShardStore::put(std::int64_t shard, ShardRecords&& records) {
-  const auto at = static_cast<std::size_t>(shard);
+  const std::size_t at = shard;
   shards_[at] = std::move(records);
   ShardRecords& kept = shards_[at];
   records_[at] = kept.size();

@@ -43,11 +43,11 @@ class Layer {
         const detail::CellIndex index(low_[0] + x, low_[1] + y, static_cast<std::int64_t>(at));
         const std::int64_t position = detail::in_range(index) ? data_.find_position(detail::position_key(index)) : -1;
         if (position < 0) continue;
-        const auto p = static_cast<std::size_t>(position);
+        const std::size_t p = position;
         const auto* end = data_.rotation_ids.begin() + data_.position_first[p + 1];
         const auto* found = std::lower_bound(data_.rotation_ids.begin() + data_.position_first[p], end, id);
         if (found == end || *found != id) continue;
-        const auto cell = static_cast<std::size_t>(found - data_.rotation_ids.begin());
+        const std::size_t cell = found - data_.rotation_ids.begin();
         counts_[x * count_[1] + y] = data_.cell_first[cell + 1] - data_.cell_first[cell];
       }
     }

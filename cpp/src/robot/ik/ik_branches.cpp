@@ -58,7 +58,7 @@ bool enumerate(const JointGroup& group, const Pose& T_world_tip, int redundant_v
   if (!candidates.known_form) return false;
   branches.complete = !candidates.free;
   branches.redundant_joint = candidates.redundant_joint;
-  branches.rejections.add(Rejection::unreachable, static_cast<std::size_t>(candidates.without));
+  branches.rejections.add(Rejection::unreachable, candidates.without);
   for (const Eigen::VectorXd& q : candidates.q) {
     double position_error = 0, rotation_error = 0;
     Rejection verdict = group.within_limits(q) ? Rejection::none : Rejection::limits;
@@ -123,7 +123,7 @@ void spread_apart(const JointGroup& group, std::vector<Eigen::VectorXd>& solutio
   for (std::size_t i = 0; i < solutions.size(); ++i) distance[i] = -(solutions[i] - middle).norm();
   for (std::size_t done = 0; done < solutions.size(); ++done) {
     const auto farthest = std::max_element(distance.begin() + static_cast<long>(done), distance.end());
-    const auto at = static_cast<std::size_t>(farthest - distance.begin());
+    const std::size_t at = farthest - distance.begin();
     std::swap(solutions[done], solutions[at]);
     std::swap(distance[done], distance[at]);
     for (std::size_t i = done + 1; i < solutions.size(); ++i) {

@@ -243,7 +243,7 @@ Screws lock_joint(const Screws& seven, int locked, double angle, Rigid& G) {
   Screws six;
   six.size = 6;
   for (int i = 0; i < 6; ++i) {
-    const auto from = static_cast<std::size_t>(i < locked ? i : i + 1);
+    const std::size_t from = i < locked ? i : i + 1;
     six.h[i] = i < locked ? seven.h[from] : Vector3d(E.R * seven.h[from]);
     six.p[i] = i < locked ? seven.p[from] : E * seven.p[from];
   }

@@ -26,7 +26,7 @@ double total(const IkObjectives& objectives, const Eigen::VectorXd& q, Eigen::Ve
 Eigen::VectorXd downhill(const JointGroup& group, const Eigen::VectorXd& q, const Matrix6Xd& J,
                          const Eigen::VectorXd& gradient, const std::vector<double>& weights) {
   constexpr double kOnLimit = 1e-9;
-  std::vector<bool> fixed(static_cast<std::size_t>(q.size()), false);
+  std::vector<bool> fixed(q.size(), false);
   for (Eigen::Index round = 0; round <= q.size(); ++round) {
     Eigen::VectorXd step = null_space_part(J, -gradient, weights, fixed);
     bool again = false;
@@ -119,7 +119,7 @@ namespace mmgrasp {
 
 Eigen::VectorXd project_onto_null_space(const Matrix6Xd& J, const Eigen::VectorXd& xi,
                                         const std::vector<double>& weights) {
-  const auto n = static_cast<std::size_t>(J.cols());
+  const std::size_t n = J.cols();
   const std::string rule = "must be " + std::to_string(n) + ", the Jacobian's columns";
   require(static_cast<std::size_t>(xi.size()) == n, "xi length", static_cast<double>(xi.size()), rule);
   require(weights.empty() || weights.size() == n, "weights length", static_cast<double>(weights.size()), rule);

@@ -67,7 +67,7 @@ FrameTree::FrameTree(const GroupModel& model)
       const int own = last ? joint.child_link : frames++;
       // Only joints of one value mimic, so that the columns of others follow each other plainly.
       const Drive of_part{drive.column + static_cast<int>(i), drive.multiplier, drive.offset};
-      motion_of_frame.resize(static_cast<std::size_t>(frames), -1);
+      motion_of_frame.resize(frames, -1);
       motion_of_frame[own] = static_cast<int>(motions.size());
       motions.push_back({own, frame, rest, parts[i].axis, parts[i].motion, of_part});
       frame = own;

@@ -63,7 +63,7 @@ void JointGroup::link_poses(const Eigen::Ref<const Eigen::VectorXd>& q, Poses& T
   if (T_world_link.size() != count) T_world_link.assign(count, Pose::Identity());
   if (all || has_base()) T_world_link[0] = has_base() ? pose_from_planar(q.head<3>()) : data_->T_world_root;
   // Planar and floating joints have frames that are no links.
-  const auto frames = static_cast<std::size_t>(kinematics.tree.frames);
+  const std::size_t frames = kinematics.tree.frames;
   if (frames != count) T_world_link.resize(frames, Pose::Identity());
   double* numbers = T_world_link[0].data();
   kinematics.place_frames(q.data(), numbers);

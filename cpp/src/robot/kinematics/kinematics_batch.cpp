@@ -71,7 +71,7 @@ Eigen::VectorXd manipulability_batch(const JointGroup& group, const Columns& Q) 
   constexpr Eigen::Index kBlock = 64;  // what stays in the first-level cache
   const Eigen::Index n = group.size(), m = Q.cols();
   Eigen::VectorXd values(m);
-  Poses poses(static_cast<std::size_t>(std::min(m, kBlock)));
+  Poses poses(std::min(m, kBlock));
   Matrix6Xd J(6, n * std::min(m, kBlock));
   for (Eigen::Index first = 0; first < m; first += kBlock) {
     const Eigen::Index count = std::min(kBlock, m - first);

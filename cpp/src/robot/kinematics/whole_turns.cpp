@@ -59,8 +59,7 @@ std::vector<Eigen::VectorXd> WholeTurns::of(const Eigen::VectorXd& q, const Eige
   double sum = 0;
   while (out.size() < count && sums.next(choice, sum)) {
     Eigen::VectorXd turned(q.size());
-    for (Eigen::Index i = 0; i < q.size(); ++i)
-      turned[i] = values[static_cast<std::size_t>(i)][static_cast<std::size_t>(choice[static_cast<std::size_t>(i)])];
+    for (Eigen::Index i = 0; i < q.size(); ++i) turned[i] = values[i][choice[i]];
     out.push_back(std::move(turned));
   }
   return out;

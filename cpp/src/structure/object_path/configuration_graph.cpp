@@ -1,8 +1,10 @@
 #include "structure/object_path/configuration_graph.hpp"
 
+#include "mmgrasp/core/detail/numbers.hpp"
+
 namespace mmgrasp::detail {
 
-constexpr double kNone = std::numeric_limits<double>::infinity();
+constexpr double kNone = kInfinity;
 
 ConfigurationGraph::ConfigurationGraph(const std::vector<int>& sizes) {
   for (const int size : sizes) alive_.emplace_back(size, 1);

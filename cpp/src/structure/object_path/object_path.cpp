@@ -70,6 +70,7 @@ void ObjectPathOptions::check() const {
   positive(rotation_tolerance, "rotation_tolerance");
   positive(edge_step, "edge_step");
   weight(gravity, "gravity");
+  weight(max_sag, "max_sag");
   require(redundant_values >= 0, "redundant_values", redundant_values, "must not be negative");
 }
 
@@ -81,6 +82,7 @@ struct ObjectPathEvaluator::Impl {
   EdgeOptions edge;
   const JointGroup* group = nullptr;
   detail::AttachedChecker* checker = nullptr;
+  bool stress_limited = false;  ///< Some member's material has a limit.
 
   Impl(const ObjectPathProblem& given, const ObjectPathOptions& with) : problem(given), options(with) {}
   Configurations find(const Poses& T_world_hand, ObjectPathResult& result) const;
@@ -213,7 +215,18 @@ void ObjectPathEvaluator::Impl::bend(const Grasp& grasp, ObjectPathResult& resul
   if (!problem.frame) return;
   const SupportedFrame held(*problem.frame, {beam_support(grasp)});
   for (const Pose& T : problem.T_world_object) {
-    result.sag.push_back(held.largest_displacement(gravity_in_object(T, options.gravity)).value);
+    const Eigen::Vector3d gravity = gravity_in_object(T, options.gravity);
+    bool yields = false;
+    if (stress_limited) {
+      const BeamState state = held.state(gravity);
+      result.sag.push_back(state.displacement.value);
+      yields = state.over_limit && state.over_limit->value > 1;
+    } else {
+      result.sag.push_back(held.largest_displacement(gravity).value);
+    }
+    if (yields || (options.max_sag > 0 && result.sag.back() > options.max_sag)) {
+      result.overloaded.push_back(static_cast<int>(result.sag.size()) - 1);
+    }
   }
   for (std::size_t i = 1; i < result.sag.size(); ++i) result.deflection += result.sag[i];
 }
@@ -240,6 +253,13 @@ ObjectPathEvaluator::ObjectPathEvaluator(const ObjectPathProblem& problem, const
   problem.check();
   options.check();
   impl_->edge.joint_step = options.edge_step;
+  if (!problem.frame) {
+    require(options.max_sag == 0, "max_sag", options.max_sag, "needs the problem's frame, which says how it bends");
+    return;
+  }
+  for (const BeamMember& member : problem.frame->members) {
+    if (member.material.stress_limit > 0) impl_->stress_limited = true;
+  }
 }
 ObjectPathEvaluator::ObjectPathEvaluator(ObjectPathEvaluator&&) noexcept = default;
 ObjectPathEvaluator& ObjectPathEvaluator::operator=(ObjectPathEvaluator&&) noexcept = default;
@@ -268,8 +288,11 @@ ObjectPathResult ObjectPathEvaluator::evaluate(const Grasp& grasp) {
   const auto violated = [&] {
     result.violation = 0;
     for (const int violation : result.violations) result.violation += violation;
+    result.violation += static_cast<int>(result.overloaded.size());
     return result.violation > 0;
   };
+  const bool limited = own.stress_limited || own.options.max_sag > 0;
+  if (limited) own.bend(grasp, result);
   const bool unreachable = violated();
   if (unreachable || own.options.single_configuration) {
     if (unreachable) {
@@ -301,7 +324,7 @@ ObjectPathResult ObjectPathEvaluator::evaluate(const Grasp& grasp) {
       stands = false;
     }
     if (!stands) continue;
-    own.bend(grasp, result);
+    if (!limited) own.bend(grasp, result);
     own.finish(found, path, result);
     return result;
   }

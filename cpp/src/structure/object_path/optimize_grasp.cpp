@@ -66,6 +66,16 @@ void GraspSearchOptions::check() const {
   grasp.check();
 }
 
+std::vector<Grasp> sag_candidates(const GraspOptimum& optimum) {
+  std::vector<Grasp> grasps;
+  const double poses = std::max(1.0, static_cast<double>(optimum.unreachable.size()) - 1);
+  for (const FeasibleGrasp& found : optimum.feasible) {
+    grasps.push_back(found.grasp);
+    grasps.back().cost = found.deflection / poses;
+  }
+  return grasps;
+}
+
 GraspOptimum optimize_grasp(const ObjectPathProblem& problem, const Pipe& pipe, const ObjectPathOptions& path_options,
                             const GraspSearchOptions& options, const Monitor& monitor) {
   options.check();
@@ -73,7 +83,7 @@ GraspOptimum optimize_grasp(const ObjectPathProblem& problem, const Pipe& pipe, 
   ObjectPathEvaluator evaluator(problem, path_options);
   GraspOptimum out;
   out.unreachable.assign(problem.T_world_object.size(), 0);
-  out.colliding = out.unreachable;
+  out.overloaded = out.colliding = out.unreachable;
   PopulationProblem search;
   search.variables = grasps.variables();
   search.upper = [&](const Eigen::VectorXd& x, int i) {
@@ -89,6 +99,7 @@ GraspOptimum optimize_grasp(const ObjectPathProblem& problem, const Pipe& pipe, 
       out.unreachable[i] += found.violations[i] == 2;
       out.colliding[i] += found.violations[i] == 1;
     }
+    for (const int pose : found.overloaded) ++out.overloaded[pose];
     if (found.outcome == Outcome::solved) {
       grasp.cost = found.cost;
       out.feasible.push_back({grasp, found.joint_motion, found.deflection, found.force_manipulability});

@@ -35,7 +35,7 @@ class Search {
   PlatformLocations run() {
     Outcome ended = Outcome::not_found;
     for (int round = 1; round <= kRounds && !(best_cost_ <= kZeroCost); ++round) {
-      const auto wanted = static_cast<std::size_t>((options_.samples * round + kRounds - 1) / kRounds);
+      const std::size_t wanted = (options_.samples * round + kRounds - 1) / kRounds;
       if (over(ended) || !fill(pick_, wanted, ended) || !fill(place_, wanted, ended)) break;
       couple();
       monitor_.report("platform locations", static_cast<double>(round) / kRounds);

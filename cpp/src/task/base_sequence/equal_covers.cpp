@@ -48,8 +48,8 @@ class Enumeration {
     std::size_t fewest = 0;
     for (std::size_t e = 0; e < times_.size(); ++e) {
       if (times_[e] > 0) continue;
-      const auto choices = static_cast<std::size_t>(
-          std::count_if(sets_of_[e].begin(), sets_of_[e].end(), [&](int s) { return barred_[s] == 0; }));
+      const std::size_t choices =
+          std::count_if(sets_of_[e].begin(), sets_of_[e].end(), [&](int s) { return barred_[s] == 0; });
       if (element < 0 || choices < fewest) {
         element = static_cast<int>(e);
         fewest = choices;
@@ -59,7 +59,7 @@ class Enumeration {
     std::vector<int> tried;
     for (int s : sets_of_[element]) {
       if (barred_[s]) continue;
-      const double with = cost + cost_of(static_cast<std::size_t>(s));
+      const double with = cost + cost_of(s);
       if (with <= allowed_) {
         take(s);
         descend(with);

@@ -120,7 +120,7 @@ class PolicyRun {
     for (const Stop& stop : stops) {
       const int heading = heading_of(actual_.grid, stop.pose.z());
       for (TrayId tray : stop.trays) {
-        const auto part = static_cast<std::size_t>(pick_of(order_, tray, round));
+        const std::size_t part = pick_of(order_, tray, round);
         const CellMask& cells = actual_.cells[tray][part];
         if (heading < 0 || !disc_inside(actual_.grid, cells, heading, stop.pose.head<2>(), options_.stops.min_radius))
           return false;

@@ -28,7 +28,7 @@ class FirstTransfer {
 
   TransferPath run() {
     GraspCandidates& candidates = input_.candidates;
-    auto next_grasps = static_cast<std::size_t>(input_.options.first_grasps);
+    std::size_t next_grasps = input_.options.first_grasps;
     for (int budget = kFirstIterations; unfinished(); budget *= 2, next_grasps *= 2, ++round_) {
       const std::size_t earlier = candidates.found().size();
       for (std::size_t i = 0; i < next_grasps && unfinished() && candidates.find_more(1); ++i)

@@ -58,7 +58,7 @@ void InformedUnion::prepare() {
   prepared_ = true;
   pairs_.clear();
   first_pair_.clear();
-  volumes_.assign(static_cast<std::size_t>(grasps_), 0);
+  volumes_.assign(grasps_, 0);
   double sum = 0;
   for (const Pair& pair : all_) {
     if (pair.grasp >= grasps_) break;
@@ -200,12 +200,12 @@ int InformedUnion::any_containing(Rng& rng, const double* q) const {
 
 int InformedUnion::draw_box(Rng& rng, double* q) {
   for (Eigen::Index i = 0; i < lower_.size(); ++i) q[i] = rng.uniform(lower_[i], upper_[i]);
-  return grasps_ > 0 ? static_cast<int>(rng.index(static_cast<std::size_t>(grasps_))) : -1;
+  return grasps_ > 0 ? static_cast<int>(rng.index(grasps_)) : -1;
 }
 
 void InformedUnion::draw_around(Rng& rng, int grasp, double factor, double* q) {
   const std::size_t first = first_of_[grasp];
-  const Pair& pair = all_[first + rng.index(first_of_[static_cast<std::size_t>(grasp) + 1] - first)];
+  const Pair& pair = all_[first + rng.index(first_of_[grasp + 1] - first)];
   draw_ellipsoid(rng, pair, pair.c_min * factor + kLeastDetour, q);
   ends_.metric().wrap(q);
   for (Eigen::Index i = 0; i < lower_.size(); ++i) q[i] = std::clamp(q[i], lower_[i], upper_[i]);
@@ -228,7 +228,7 @@ int InformedUnion::draw(Rng& rng, double* q) {
     const double at = rng.uniform() * sum;
     const auto pair = std::upper_bound(pairs_.begin(), pairs_.end(), at,
                                        [](double value, const Pair& entry) { return value < entry.volume; });
-    const auto index = static_cast<std::size_t>(std::min(pair - pairs_.begin(), std::ptrdiff_t(pairs_.size()) - 1));
+    const std::size_t index = std::min(pair - pairs_.begin(), std::ptrdiff_t(pairs_.size()) - 1);
     draw_ellipsoid(rng, pairs_[index], cost_ - ends_.cost(pairs_[index].grasp), q);
     if (!is_representative(pairs_[index], q)) continue;
     ends_.metric().wrap(q);

@@ -29,11 +29,7 @@ int moved_by(const JointGroup& group, int link) {
 }  // namespace
 
 TransferChecks::TransferChecks(const ManipulationProblem& problem, const EdgeOptions& edge, int workers)
-    : problem_(problem),
-      edge_(edge),
-      path_edge_(edge),
-      robot_(static_cast<std::size_t>(workers)),
-      attached_(robot_.size()) {
+    : problem_(problem), edge_(edge), path_edge_(edge), robot_(workers), attached_(robot_.size()) {
   path_edge_.joint_step = std::min(path_edge_.joint_step, kFinalStep) / kFinalResolution;
   path_edge_.workspace_step /= kFinalResolution;
   std::map<std::pair<double, std::vector<double>>, int> openings;  // by opening and posture

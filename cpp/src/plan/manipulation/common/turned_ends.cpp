@@ -131,7 +131,7 @@ void add_turned_ends(const WholeTurns& turns, const JointGroup& group, double bo
       for (std::size_t n = 0; n < most && sums.next(choice, squared) && std::sqrt(squared) < length; ++n) {
         Eigen::VectorXd start = s, goal = g;
         for (std::size_t i = 0; i < choice.size(); ++i) {
-          const TurnPair& pair = pairs[i][static_cast<std::size_t>(choice[i])];
+          const TurnPair& pair = pairs[i][choice[i]];
           if (candidate.metric.wraps(static_cast<int>(i))) continue;
           start[static_cast<Eigen::Index>(i)] = pair.start;
           goal[static_cast<Eigen::Index>(i)] = pair.goal;

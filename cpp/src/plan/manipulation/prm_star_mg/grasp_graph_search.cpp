@@ -14,9 +14,7 @@ constexpr std::size_t kCancelCheckInterval = 256;  // Nodes expanded between two
 }  // namespace
 
 GraspGraphSearch::GraspGraphSearch(const Roadmap& roadmap)
-    : roadmap_(roadmap),
-      edge_blocked_(static_cast<std::size_t>(roadmap.edge_count()), 0),
-      first_goal_link_(static_cast<std::size_t>(roadmap.size()), -1) {}
+    : roadmap_(roadmap), edge_blocked_(roadmap.edge_count(), 0), first_goal_link_(roadmap.size(), -1) {}
 
 double GraspGraphSearch::heuristic(int node) const {
   double least = kInfinity;
@@ -38,7 +36,7 @@ void GraspGraphSearch::begin(const GraspGraph& graph) {
   ++round_;
   nodes_opened_ = 0;
   heap_.clear();
-  const auto count = static_cast<std::size_t>(graph.first_goal() + graph.goals());
+  const std::size_t count = graph.first_goal() + graph.goals();
   if (nodes_.size() < count) nodes_.resize(count);
   for (const int v : graph.blocked_vertices) nodes_[v].blocked = round_;
   for (const int e : graph.blocked_edges) edge_blocked_[e] = round_;

@@ -196,7 +196,7 @@ class RrtStarMg {
       take_path(input_, {ends_.grasp(grasp), incumbent_.cost, std::move(path), stage}, result_);
       return true;
     }
-    const auto edge = static_cast<std::size_t>(blocked);
+    const std::size_t edge = blocked;
     if (edge + 1 == crossing) {
       connections_.remove(grasp, connection);
     } else {

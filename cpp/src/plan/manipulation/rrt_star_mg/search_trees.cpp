@@ -9,7 +9,7 @@ void append_search_trees(const GraspTrees& trees, std::vector<SearchTree>& out) 
   const GraspEnds& ends = trees.ends();
   for (int grasp = 0; grasp < ends.size(); ++grasp)
     for (const int side : {GraspEnds::kStart, GraspEnds::kGoal}) {
-      std::vector<int> column(static_cast<std::size_t>(trees.vertex_count()), -1), members;
+      std::vector<int> column(trees.vertex_count(), -1), members;
       trees.each_in_tree(GraspTrees::tree(grasp, side), [&](int v) {
         column[v] = static_cast<int>(members.size());
         members.push_back(v);

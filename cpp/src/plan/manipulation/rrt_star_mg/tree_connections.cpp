@@ -5,7 +5,7 @@
 namespace mmgrasp::detail {
 
 TreeConnections::TreeConnections(const GraspTrees& trees)
-    : trees_(trees), last_(static_cast<std::size_t>(trees.ends().size()), -1), best_(last_.size()) {}
+    : trees_(trees), last_(trees.ends().size(), -1), best_(last_.size()) {}
 
 double TreeConnections::cost(int connection) const {
   const Connection& own = connections_[connection];

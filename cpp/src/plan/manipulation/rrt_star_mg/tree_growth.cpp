@@ -16,7 +16,7 @@ TreeGrowth::TreeGrowth(GraspTrees& trees, TreeChecks& checks, const NearVertices
       incumbent_(incumbent),
       options_(options),
       tuning_(tuning),
-      per_grasp_(static_cast<std::size_t>(trees.ends().size())),
+      per_grasp_(trees.ends().size()),
       q_(trees.ends().dimension()) {}
 
 int TreeGrowth::extend_tree(int tree, int configuration) {

@@ -9,7 +9,7 @@ TreeIndex::TreeIndex(int dimension, JointMetric metric)
     : dimension_(dimension),
       metric_(std::move(metric)),
       block_size_(static_cast<std::size_t>(dimension) * kBlock),
-      offsets_(static_cast<std::size_t>(dimension), 0.0) {
+      offsets_(dimension, 0.0) {
   nodes_.emplace_back();
   nodes_.back().low = new_block();
 }
@@ -87,7 +87,7 @@ void TreeIndex::split(int index) {
   node.split = middle;
   node.low = low;
   node.high = low + 1;
-  std::vector<double> q(static_cast<std::size_t>(dimension_));
+  std::vector<double> q(dimension_);
   for (const int b : chain) {
     const Block block = blocks_[b];
     for (int i = 0; i < block.count; ++i) {

@@ -76,8 +76,8 @@ class MMGRASP_EXPORT TreeIndex {
     if (!metric_.any()) return visit_node(0, q, 0, bound, visit);
     query_.assign(q, q + dimension_);
     metric_.wrap(query_.data());
-    cell_low_.assign(static_cast<std::size_t>(dimension_), -kPi);
-    cell_high_.assign(static_cast<std::size_t>(dimension_), kPi);
+    cell_low_.assign(dimension_, -kPi);
+    cell_high_.assign(dimension_, kPi);
     visit_node_around(0, query_.data(), 0, bound, visit);
   }
 

@@ -15,7 +15,7 @@ constexpr int kMaxParentsTried = 8;  // Edges checked for one vertex; its neighb
 void TreeRepair::reconnect(int v) {
   members_.clear();
   collect_below(v, members_);
-  cut_.resize(static_cast<std::size_t>(trees_.vertex_count()), 0);
+  cut_.resize(trees_.vertex_count(), 0);
   for (const int member : members_) cut_[member] = 1;
   // A vertex takes all below it along; the least bridge is the cheapest edge from those to what remains above them.
   double least = kInfinity;

@@ -46,7 +46,7 @@ TreeSampler::Sample TreeSampler::draw_reassigned(Rng& rng, int side) {
     const auto may_improve = [&](int grasp) {
       return informed_.contains(grasp, q) && trees_.find(GraspTrees::tree(grasp, side), configuration) < 0;
     };
-    const auto count = static_cast<std::size_t>(informed_.grasps());
+    const std::size_t count = informed_.grasps();
     int grasp = -1;
     for (int i = 0; i < kRandomGuesses && grasp < 0; ++i) {
       const int guess = static_cast<int>(rng.index(count));

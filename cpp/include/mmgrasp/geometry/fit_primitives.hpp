@@ -1,0 +1,47 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "mmgrasp/core/export.hpp"
+#include "mmgrasp/core/pose.hpp"
+#include "mmgrasp/geometry/mesh.hpp"
+
+namespace mmgrasp {
+
+enum class PrimitiveKind { cylinder, box, cone, sphere };
+
+/// "cylinder", "box", "cone", "sphere".
+MMGRASP_EXPORT const char* primitive_kind_name(PrimitiveKind kind);
+
+/// A width at which fingers may close on a segment: opposite faces of its box, or its round wall.
+struct MMGRASP_EXPORT GraspWidth {
+  double width = 0;  ///< [m]
+  Eigen::Vector3d axis =
+      Eigen::Vector3d::UnitX();  ///< Closing direction of a box, axis of a round wall; unit, mesh frame.
+  double covered =
+      0;  ///< Share of the box' faces (the lesser of the two) or of the turn around the wall that is surface.
+};
+
+/// The primitive that stands for a segment (P1, section 5.2.2).
+struct MMGRASP_EXPORT FittedPrimitive {
+  PrimitiveKind kind = PrimitiveKind::box;
+  Pose T_mesh_primitive = Pose::Identity();  ///< Centre; z along the axis of a cylinder or cone, which narrows along z.
+  Eigen::Vector3d size = Eigen::Vector3d::Zero();  ///< Box: lengths; cylinder: (d, d, length); cone: (d at its foot, d
+                                                   ///< at its top, length); sphere: (d, d, d) [m].
+  double volume = 0;                               ///< Of the primitive [m^3].
+  double hull_volume = 0;                          ///< Of the segment's convex hull [m^3].
+  double deviation = 0;  ///< Mean distance of the segment's faces from the primitive's surface they lie on [m].
+  std::vector<GraspWidth> widths;  ///< Most covered first; none where the primitive has no surface to hold.
+};
+
+/// Fits a cylinder, a box, a cone and a sphere to each segment of a mesh and keeps the one whose volume is closest to
+/// that of the segment's convex hull, of those that have surface on them (P1, section 5.2.2; cones and spheres are
+/// ours). Cylinders, cones and spheres are found by RANSAC (PCL, Schnabel, Wahl and Klein 2007's criteria: distance and
+/// normal) and refined by least squares over the corners of the faces, which lie on the true surface where chords do
+/// not. Walls that face inwards (bores) are never offered, nor are pairs of a box' faces of which one has less than a
+/// tenth of its area on it. `labels`: the segment of each face, as in MeshSegmentation. Throws InvalidInput when there
+/// is not one label >= 0 a face.
+MMGRASP_EXPORT std::vector<FittedPrimitive> fit_primitives(const TriangleMesh& mesh, const std::vector<int>& labels);
+
+}  // namespace mmgrasp

@@ -1,0 +1,407 @@
+#include "geometry/segmentation/find_threads.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "geometry/segmentation/face_graph.hpp"
+#include "geometry/segmentation/refine_models.hpp"
+
+namespace mmgrasp::detail {
+namespace {
+
+using Eigen::Vector3d;
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+constexpr double kPi = 3.14159265358979323846;
+/// Edges that bend inwards by less are no roots [rad].
+constexpr double kRootBend = 0.35;
+constexpr double kLeastTurns = 2;
+/// How well the edges come to lie at one angle when the helix is unwound: 1 when all do, near 0 when they lie anywhere.
+constexpr double kInPhase = 0.3;
+/// Edges this far from the common angle belong to the root [rad].
+constexpr double kPhase = 0.8;
+/// Pitches looked for, in radii of the root.
+constexpr double kFinest = 0.02, kCoarsest = 1.5;
+/// Edges of a chain may differ in radius by this share of the pitch (standard deviation).
+constexpr double kRadius = 0.15;
+/// Edges that differ more in direction from the helix are left out of its fit: the sine of the angle.
+constexpr double kDirection = 0.35;
+constexpr int kFits = 4;
+/// Cosine to the axis of the normals of faces across it: steeper than the flanks of metric threads.
+constexpr double kAcross = 0.9;
+/// Longest chains tried.
+constexpr std::size_t kMostChains = 12;
+/// Depth of a thread from root to crest, in pitches; metric threads have 0.61, square ones 0.5.
+constexpr double kDeepest = 1.0;
+
+struct Helix {
+  Vector3d axis = Vector3d::UnitZ(), point = Vector3d::Zero();
+  double pitch_per_radian = 0;  ///< Along the axis [m/rad].
+};
+
+/// The screw motion along which the edges run: each edge e at x is parallel to moment + axis x x (least squares over
+/// the six coordinates, edges weighted by their length).
+std::optional<Helix> fit_helix(const FaceGraph& graph, const std::vector<int>& chain) {
+  Vector3d middle = Vector3d::Zero();
+  double length = 0;
+  for (const int k : chain) {
+    const FaceBorder& b = graph.borders[k];
+    middle += b.length * 0.5 * (graph.vertices[b.vertices[0]] + graph.vertices[b.vertices[1]]);
+    length += b.length;
+  }
+  if (length <= 0) return std::nullopt;
+  middle /= length;
+  double size = 0;
+  for (const int k : chain) {
+    for (const int v : graph.borders[k].vertices) size = std::max(size, (graph.vertices[v] - middle).norm());
+  }
+  const auto cross = [](const Vector3d& v) {
+    Eigen::Matrix3d m;
+    m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+    return m;
+  };
+  Matrix6d system = Matrix6d::Zero();
+  for (const int k : chain) {
+    const FaceBorder& b = graph.borders[k];
+    const Vector3d u = (graph.vertices[b.vertices[0]] - middle) / size,
+                   v = (graph.vertices[b.vertices[1]] - middle) / size;
+    if ((v - u).norm() <= 0) continue;
+    // direction x (moment + axis x x) = 0
+    const Eigen::Matrix3d along = cross((v - u).normalized());
+    Eigen::Matrix<double, 3, 6> rows;
+    rows << -along * cross(0.5 * (u + v)), along;
+    system += b.length / length * rows.transpose() * rows;
+  }
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(system);
+  const Vector3d axis = solver.eigenvectors().col(0).head<3>(), moment = solver.eigenvectors().col(0).tail<3>();
+  if (axis.norm() < 1e-6) return std::nullopt;
+  Helix out;
+  out.axis = axis.normalized();
+  out.pitch_per_radian = axis.dot(moment) / axis.squaredNorm() * size;
+  out.point = middle + size * axis.cross(moment) / axis.squaredNorm();
+  return out;
+}
+
+/// Height, radius and direction from the axis of a point in a helix' frame.
+struct Place {
+  double height, radius;
+  Vector3d outward;
+};
+
+Place place_at(const Helix& helix, const Vector3d& x) {
+  const Vector3d d = x - helix.point;
+  Place out;
+  out.height = d.dot(helix.axis);
+  const Vector3d radial = d - out.height * helix.axis;
+  out.radius = radial.norm();
+  out.outward = out.radius > 0 ? Vector3d(radial / out.radius) : Vector3d::Zero();
+  return out;
+}
+
+struct Range {
+  double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
+  void add(double x) {
+    low = std::min(low, x);
+    high = std::max(high, x);
+  }
+};
+
+/// Turns and moves the axis so that the chain's vertices lie at one distance from it.
+void refine_axis(const FaceGraph& graph, const std::vector<int>& chain, Helix& helix) {
+  std::vector<Vector3d> points;
+  std::vector<double> weights;
+  double sum = 0, length = 0;
+  for (const int k : chain) {
+    for (const int vertex : graph.borders[k].vertices) {
+      points.push_back(graph.vertices[vertex]);
+      weights.push_back(graph.borders[k].length);
+      sum += weights.back() * place_at(helix, points.back()).radius;
+      length += weights.back();
+    }
+  }
+  RoundFit cylinder;
+  cylinder.axis = helix.axis;
+  cylinder.point = helix.point;
+  cylinder.radius = sum / length;
+  if (!refine_cylinder(points, weights, cylinder)) return;
+  helix.axis = cylinder.axis;
+  helix.point = cylinder.point;
+}
+
+/// The roots of all that run along the helix at the radius that most of the chain's edges have: not those of the head
+/// that the thread ends on nor branches that noise makes, but pieces of the chain that noise broke off.
+std::vector<int> edges_along(const FaceGraph& graph, const std::vector<int>& all, const std::vector<int>& chain,
+                             const Helix& helix) {
+  std::vector<std::pair<double, double>> radii;
+  double length = 0;
+  for (const int k : chain) {
+    const FaceBorder& b = graph.borders[k];
+    const Vector3d middle = 0.5 * (graph.vertices[b.vertices[0]] + graph.vertices[b.vertices[1]]);
+    radii.emplace_back(place_at(helix, middle).radius, b.length);
+    length += b.length;
+  }
+  std::sort(radii.begin(), radii.end());
+  double median = 0, sum = 0;
+  for (const auto& [radius, weight] : radii) {
+    median = radius;
+    sum += weight;
+    if (2 * sum >= length) break;
+  }
+  const double reach = kRadius * 2 * kPi * std::abs(helix.pitch_per_radian);
+  std::vector<int> out;
+  for (const int k : all) {
+    const FaceBorder& b = graph.borders[k];
+    const Vector3d u = graph.vertices[b.vertices[0]], v = graph.vertices[b.vertices[1]];
+    const Place at = place_at(helix, 0.5 * (u + v));
+    const Vector3d motion = helix.axis.cross(at.outward) * at.radius + helix.pitch_per_radian * helix.axis;
+    if (b.length <= 0 || motion.norm() <= 0 || std::abs(at.radius - median) > reach) continue;
+    if (((v - u) / b.length).cross(motion.normalized()).norm() < kDirection) out.push_back(k);
+  }
+  return out;
+}
+
+struct Turn {
+  double angle, height, length;
+  int edge;
+};
+
+std::complex<double> unwound(const std::vector<Turn>& turns, double per_metre) {
+  std::complex<double> sum = 0;
+  for (const Turn& t : turns) sum += std::polar(t.length, t.angle - per_metre * t.height);
+  return sum;
+}
+
+/// The pitch at which the edges, unwound, come to lie at one angle, and those edges. Nothing where they do not: edges
+/// of rings are spread evenly over the turn whatever the pitch, and so are edges that noise makes.
+std::optional<std::vector<int>> edges_in_phase(const FaceGraph& graph, const std::vector<int>& edges, Helix& helix) {
+  const Vector3d side = helix.axis.unitOrthogonal(), across = helix.axis.cross(side);
+  std::vector<Turn> turns;
+  double length = 0, radius = 0;
+  Range heights;
+  for (const int k : edges) {
+    const FaceBorder& b = graph.borders[k];
+    const Place at = place_at(helix, 0.5 * (graph.vertices[b.vertices[0]] + graph.vertices[b.vertices[1]]));
+    turns.push_back({std::atan2(at.outward.dot(across), at.outward.dot(side)), at.height, b.length, k});
+    length += b.length;
+    radius += b.length * at.radius;
+    heights.add(at.height);
+  }
+  if (length <= 0) return std::nullopt;
+  radius /= length;
+  const double span = heights.high - heights.low;
+  if (!(span > kFinest * radius)) return std::nullopt;
+  const double most = 2 * kPi / (kFinest * radius), least = 2 * kPi / (kCoarsest * radius), step = 1 / span;
+  double best = 0, coherent = -1;
+  for (double w = least; w <= most; w += step) {
+    for (const double tried : {w, -w}) {
+      const double found = std::abs(unwound(turns, tried));
+      if (found <= coherent) continue;
+      coherent = found;
+      best = tried;
+    }
+  }
+  for (double part = step / 2; part > 1e-4 * step; part /= 2) {
+    for (const double tried : {best - part, best + part}) {
+      const double found = std::abs(unwound(turns, tried));
+      if (found <= coherent) continue;
+      coherent = found;
+      best = tried;
+    }
+  }
+  if (coherent < kInPhase * length) return std::nullopt;
+  helix.pitch_per_radian = 1 / best;
+  const double phase = std::arg(unwound(turns, best));
+  std::vector<int> out;
+  for (const Turn& t : turns) {
+    if (std::abs(std::remainder(t.angle - best * t.height - phase, 2 * kPi)) < kPhase) out.push_back(t.edge);
+  }
+  return out;
+}
+
+/// Whether the edges run at one radius for long enough.
+bool is_thread_root(const FaceGraph& graph, const std::vector<int>& edges, const Helix& helix, Range& heights,
+                    double& radius) {
+  double length = 0, turned = 0, mean = 0, square = 0;
+  for (const int k : edges) {
+    const FaceBorder& b = graph.borders[k];
+    const Vector3d u = graph.vertices[b.vertices[0]], v = graph.vertices[b.vertices[1]];
+    const Place at = place_at(helix, 0.5 * (u + v));
+    if (at.radius <= 0) continue;
+    length += b.length;
+    turned += std::abs((v - u).dot(helix.axis.cross(at.outward))) / at.radius;
+    mean += b.length * at.radius;
+    square += b.length * at.radius * at.radius;
+    heights.add(place_at(helix, u).height);
+    heights.add(place_at(helix, v).height);
+  }
+  if (length <= 0) return false;
+  mean /= length;
+  radius = mean;
+  const double pitch = 2 * kPi * std::abs(helix.pitch_per_radian);
+  const double spread = std::sqrt(std::max(0.0, square / length - mean * mean));
+  return turned > 2 * kPi * kLeastTurns && spread < kRadius * pitch && heights.high - heights.low > kLeastTurns * pitch;
+}
+
+/// Chains of edges that share vertices, bend inwards and go straight on: several starts make several chains.
+std::vector<std::vector<int>> root_chains(const FaceGraph& graph) {
+  std::map<int, std::vector<int>> at_vertex;
+  for (std::size_t k = 0; k < graph.borders.size(); ++k) {
+    if (graph.borders[k].bend > -kRootBend) continue;
+    for (const int v : graph.borders[k].vertices) at_vertex[v].push_back(static_cast<int>(k));
+  }
+  std::vector<char> taken(graph.borders.size(), 0);
+  std::vector<std::vector<int>> chains;
+  const auto leads_on = [&](int from, int to, int vertex) {
+    const auto away = [&](int k) {
+      const FaceBorder& b = graph.borders[k];
+      const int other = b.vertices[0] == vertex ? b.vertices[1] : b.vertices[0];
+      return Vector3d((graph.vertices[other] - graph.vertices[vertex]).normalized());
+    };
+    return away(from).dot(away(to)) < -0.5;
+  };
+  for (const auto& [vertex, edges] : at_vertex) {
+    for (const int begin : edges) {
+      if (taken[begin]) continue;
+      std::vector<int> chain{begin};
+      taken[begin] = 1;
+      for (std::size_t i = 0; i < chain.size(); ++i) {
+        for (const int v : graph.borders[chain[i]].vertices) {
+          for (const int next : at_vertex.at(v)) {
+            if (taken[next] || !leads_on(chain[i], next, v)) continue;
+            taken[next] = 1;
+            chain.push_back(next);
+          }
+        }
+      }
+      if (chain.size() >= 12) chains.push_back(std::move(chain));
+    }
+  }
+  return chains;
+}
+
+/// The thread around a root: faces no higher or lower than half a pitch beyond it, from the root to the crest.
+std::optional<ScrewThread> thread_around(const FaceGraph& graph, const Helix& helix, const Range& heights,
+                                         double root) {
+  const double pitch = 2 * kPi * std::abs(helix.pitch_per_radian), slack = 0.05 * pitch + 3e-3 * root;
+  const auto faces_between = [&](double low, double high) {
+    std::vector<int> faces;
+    for (int f = 0; f < graph.size(); ++f) {
+      bool inside = true, beyond = false, at_root = true;
+      for (const int v : graph.faces[f]) {
+        const Place at = place_at(helix, graph.vertices[v]);
+        inside = inside && at.height > heights.low - 0.75 * pitch && at.height < heights.high + 0.75 * pitch &&
+                 at.radius >= low - slack && at.radius <= high + slack;
+        beyond = beyond || at.height < heights.low || at.height > heights.high;
+        at_root = at_root && std::abs(at.radius - root) < slack;
+      }
+      if (!inside) continue;
+      // Past the ends of the root lie the shaft that the thread ends on and the face of a head or shoulder.
+      if (beyond && (at_root || std::abs(graph.normals[f].dot(helix.axis)) > kAcross)) continue;
+      faces.push_back(f);
+    }
+    return faces;
+  };
+  const auto area_of = [&](const std::vector<int>& faces) {
+    double area = 0;
+    for (const int f : faces) area += graph.areas[f];
+    return area;
+  };
+  const std::vector<int> outside = faces_between(root, root + kDeepest * pitch);
+  const std::vector<int> inside = faces_between(root - kDeepest * pitch, root);
+  const bool external = area_of(outside) >= area_of(inside);
+  // The crest, from vertices between the ends of the root: what nearly all of them reach at most.
+  std::vector<double> depths;
+  for (const int f : external ? outside : inside) {
+    for (const int v : graph.faces[f]) {
+      const Place at = place_at(helix, graph.vertices[v]);
+      if (at.height < heights.low || at.height > heights.high) continue;
+      depths.push_back(external ? at.radius - root : root - at.radius);
+    }
+  }
+  if (depths.empty()) return std::nullopt;
+  const auto last = depths.begin() + static_cast<std::ptrdiff_t>(0.98 * static_cast<double>(depths.size() - 1));
+  std::nth_element(depths.begin(), last, depths.end());
+  const double crest = external ? root + *last : root - *last;
+  ScrewThread out;
+  out.faces = external ? faces_between(root, crest) : faces_between(crest, root);
+  if (out.faces.empty()) return std::nullopt;
+  Range span;
+  for (const int f : out.faces) {
+    for (const int v : graph.faces[f]) span.add(place_at(helix, graph.vertices[v]).height);
+  }
+  const bool right_handed = helix.pitch_per_radian > 0;
+  out.pitch = right_handed ? pitch : -pitch;
+  out.root_radius = root;
+  out.crest_radius = crest;
+  if (std::abs(out.crest_radius - out.root_radius) < 0.1 * pitch) return std::nullopt;
+  out.length = span.high - span.low;
+  out.T_mesh_thread.linear() = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), helix.axis).toRotationMatrix();
+  out.T_mesh_thread.translation() = helix.point + 0.5 * (span.low + span.high) * helix.axis;
+  return out;
+}
+
+}  // namespace
+
+std::vector<ScrewThread> find_threads(const TriangleMesh& mesh) {
+  FaceGraph graph;
+  graph.vertices = mesh.vertices;
+  graph.faces = mesh.triangles;
+  graph.measure();
+  std::vector<ScrewThread> out;
+  std::vector<char> taken(graph.faces.size(), 0);
+  std::vector<std::vector<int>> chains = root_chains(graph);
+  std::vector<int> roots;
+  for (std::size_t k = 0; k < graph.borders.size(); ++k) {
+    if (graph.borders[k].bend <= -kRootBend) roots.push_back(static_cast<int>(k));
+  }
+  std::stable_sort(chains.begin(), chains.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });
+  if (chains.size() > kMostChains) chains.resize(kMostChains);
+  for (const std::vector<int>& chain : chains) {
+    const auto known = std::count_if(chain.begin(), chain.end(), [&](int k) {
+      return taken[graph.borders[k].first] || taken[graph.borders[k].second];
+    });
+    if (2 * known > static_cast<std::ptrdiff_t>(chain.size())) continue;  // another start or piece of the same thread
+    std::optional<Helix> helix = fit_helix(graph, chain);
+    std::vector<int> along = chain;
+    for (int fit = 0; fit < kFits && helix; ++fit) {
+      along = edges_along(graph, roots, along, *helix);
+      helix = fit_helix(graph, along);
+    }
+    if (!helix) continue;
+    refine_axis(graph, along, *helix);
+    const std::optional<std::vector<int>> turns = edges_in_phase(graph, along, *helix);
+    if (!turns) continue;
+    refine_axis(graph, *turns, *helix);
+    Range heights;
+    double root = 0;
+    if (!is_thread_root(graph, *turns, *helix, heights, root)) continue;
+    std::optional<ScrewThread> thread = thread_around(graph, *helix, heights, root);
+    if (!thread) continue;
+    const auto again = std::count_if(thread->faces.begin(), thread->faces.end(), [&](int f) { return taken[f] != 0; });
+    if (2 * again > static_cast<std::ptrdiff_t>(thread->faces.size())) continue;
+    for (const int f : thread->faces) taken[f] = 1;
+    out.push_back(std::move(*thread));
+  }
+  return out;
+}
+
+void smooth_thread(const ScrewThread& thread, TriangleMesh& mesh) {
+  const Vector3d axis = thread.T_mesh_thread.linear().col(2), point = thread.T_mesh_thread.translation();
+  std::vector<char> done(mesh.vertices.size(), 0);
+  for (const int f : thread.faces) {
+    for (const int v : mesh.triangles[f]) {
+      if (done[v]) continue;
+      done[v] = 1;
+      const Vector3d d = mesh.vertices[v] - point, up = d.dot(axis) * axis, radial = d - up;
+      if (radial.norm() > 0) mesh.vertices[v] = point + up + thread.crest_radius * radial.normalized();
+    }
+  }
+}
+
+}  // namespace mmgrasp::detail

@@ -1,0 +1,196 @@
+#include "mmgrasp/geometry/segment_mesh.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "geometry/segmentation/diameter_clusters.hpp"
+#include "geometry/segmentation/face_graph.hpp"
+#include "geometry/segmentation/find_threads.hpp"
+#include "geometry/segmentation/grow_regions.hpp"
+#include "geometry/segmentation/inner_walls.hpp"
+#include "geometry/segmentation/join_regions.hpp"
+#include "geometry/segmentation/surface_creases.hpp"
+#include "geometry/segmentation/turn_outwards.hpp"
+#include "mmgrasp/core/error.hpp"
+
+namespace mmgrasp {
+namespace {
+
+using detail::FaceGraph;
+using Eigen::Vector3d;
+constexpr std::size_t kMostTriangles = 10'000'000;
+/// Segments more of whose area than this is thread are said to be threaded.
+constexpr double kThreadShare = 0.1;
+
+double diagonal_of(const std::vector<Vector3d>& points) {
+  Eigen::AlignedBox3d box;
+  for (const Vector3d& p : points) box.extend(p);
+  return box.isEmpty() ? 0 : box.diagonal().norm();
+}
+
+/// Edge length at which even faces over the area would be about so many, but no finer than half the least size.
+double longest_edge(const TriangleMesh& mesh, double diagonal, const MeshSegmentationOptions& options) {
+  double area = 0;
+  for (const auto& t : mesh.triangles) {
+    const Vector3d a = mesh.vertices[t[0]];
+    area += (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a).norm() / 2;
+  }
+  require(area > 0, "mesh", area, "must have an area");
+  return std::max(std::sqrt(4 * area / (std::sqrt(3.0) * options.faces)), 0.5 * options.min_size * diagonal);
+}
+
+/// Regions of the cut faces; each step reads what the one before found.
+std::vector<int> find_regions(const FaceGraph& graph, const std::vector<int>& clusters, double diagonal,
+                              const MeshSegmentationOptions& options) {
+  const double narrowest = options.min_size * diagonal;
+  const int threads = options.diameter.threads;
+  const std::vector<double> bends = detail::inward_bends(graph, narrowest, threads);
+  const detail::InnerWalls walls = detail::find_inner_walls(graph, threads);
+  std::vector<char> outer(graph.faces.size()), seed(graph.faces.size()), passable(graph.borders.size());
+  for (int f = 0; f < graph.size(); ++f) {
+    outer[f] = !walls.inner[f];
+    seed[f] = outer[f] && bends[f] < options.crease;
+  }
+  for (std::size_t k = 0; k < passable.size(); ++k) {
+    const detail::FaceBorder& border = graph.borders[k];
+    passable[k] = border.bend > -options.crease && clusters[border.first] == clusters[border.second];
+  }
+  std::vector<int> labels = detail::connected_regions(graph, seed, passable, narrowest * narrowest);
+  detail::grow_regions(graph, outer, labels);
+  const int count = detail::join_regions(graph, narrowest, options.convexity, labels);
+  detail::label_inner_walls(graph, walls, count, labels);
+  detail::join_regions(graph, narrowest, options.convexity, labels);
+  return labels;
+}
+
+/// The label that most of each face's pieces have, by area; and the mean of the pieces' diameters.
+void gather_pieces(const FaceGraph& graph, const std::vector<int>& labels, const std::vector<double>& diameters,
+                   std::size_t faces, MeshSegmentation& out) {
+  out.labels.assign(faces, 0);
+  out.diameters.assign(faces, 0);
+  std::vector<std::vector<int>> pieces(faces);
+  for (int f = 0; f < graph.size(); ++f) pieces[graph.parents[f]].push_back(f);
+  for (std::size_t f = 0; f < faces; ++f) {
+    std::vector<std::pair<int, double>> shares;
+    double sum = 0, area = 0;
+    for (const int piece : pieces[f]) {
+      const auto at =
+          std::find_if(shares.begin(), shares.end(), [&](const auto& s) { return s.first == labels[piece]; });
+      if (at == shares.end()) {
+        shares.emplace_back(labels[piece], graph.areas[piece]);
+      } else {
+        at->second += graph.areas[piece];
+      }
+      if (diameters[piece] <= 0) continue;
+      sum += graph.areas[piece] * diameters[piece];
+      area += graph.areas[piece];
+    }
+    const auto most = std::max_element(shares.begin(), shares.end(),
+                                       [](const auto& a, const auto& b) { return a.second < b.second; });
+    if (most != shares.end()) out.labels[f] = most->first;
+    if (area > 0) out.diameters[f] = sum / area;
+  }
+}
+
+double median_by_area(std::vector<std::pair<double, double>> values) {
+  std::sort(values.begin(), values.end());
+  double total = 0, sum = 0;
+  for (const auto& [value, weight] : values) total += weight;
+  for (const auto& [value, weight] : values) {
+    sum += weight;
+    if (2 * sum >= total) return value;
+  }
+  return 0;
+}
+
+void list_segments(const TriangleMesh& mesh, MeshSegmentation& out) {
+  std::vector<char> threaded(mesh.triangles.size(), 0);
+  for (const ScrewThread& thread : out.threads) {
+    for (const int f : thread.faces) threaded[f] = 1;
+  }
+  std::vector<MeshSegment> segments;
+  std::vector<std::vector<std::pair<double, double>>> diameters;
+  std::vector<double> thread_area;
+  for (std::size_t f = 0; f < out.labels.size(); ++f) {
+    const std::size_t s = static_cast<std::size_t>(out.labels[f]);
+    if (segments.size() <= s) {
+      segments.resize(s + 1);
+      diameters.resize(s + 1);
+      thread_area.resize(s + 1, 0);
+    }
+    const auto& t = mesh.triangles[f];
+    const Vector3d a = mesh.vertices[t[0]];
+    const double area = (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a).norm() / 2;
+    segments[s].faces.push_back(static_cast<int>(f));
+    segments[s].area += area;
+    if (out.diameters[f] > 0) diameters[s].emplace_back(out.diameters[f], area);
+    if (threaded[f]) thread_area[s] += area;
+  }
+  std::vector<int> order;
+  for (std::size_t s = 0; s < segments.size(); ++s) {
+    segments[s].diameter = median_by_area(std::move(diameters[s]));
+    segments[s].threaded = thread_area[s] > kThreadShare * segments[s].area;
+    if (!segments[s].faces.empty()) order.push_back(static_cast<int>(s));
+  }
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return segments[a].area > segments[b].area; });
+  std::vector<int> number(segments.size(), -1);
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    number[order[k]] = static_cast<int>(k);
+    out.segments.push_back(std::move(segments[order[k]]));
+  }
+  for (int& label : out.labels) label = number[label];
+}
+
+}  // namespace
+
+void MeshSegmentationOptions::check() const {
+  diameter.check();
+  require(max_clusters >= 1 && max_clusters <= 32, "max_clusters", max_clusters, "must be from 1 to 32");
+  require(smoothing >= 0 && std::isfinite(smoothing), "smoothing", smoothing, "must be 0 or more, and finite");
+  require(crease > 0 && crease < 3.14159265358979, "crease", crease, "must be above 0 and below pi rad");
+  require(min_size > 0 && min_size < 0.5, "min_size", min_size, "must be above 0 and below 0.5");
+  require(convexity >= 0 && std::isfinite(convexity), "convexity", convexity, "must be 0 or more, and finite");
+  require(faces >= 1 && faces <= 1'000'000, "faces", faces, "must be from 1 to 1000000");
+}
+
+MeshSegmentation segment_mesh(const TriangleMesh& mesh, const MeshSegmentationOptions& options,
+                              const Monitor& monitor) {
+  options.check();
+  require(mesh.triangles.size() <= kMostTriangles, "mesh", static_cast<double>(mesh.triangles.size()),
+          "must have at most 10 million triangles");
+  const double diagonal = diagonal_of(mesh.vertices);
+  const double longest = longest_edge(mesh, diagonal, options);
+  MeshSegmentation out;
+  const auto stopped = [&] {
+    MeshSegmentation nothing;
+    nothing.outcome = Outcome::stopped;
+    return nothing;
+  };
+  TriangleMesh smooth = mesh;
+  out.turned = detail::turn_outwards(smooth);
+  if (options.smooth_threads) {
+    monitor.report("threads", 0);
+    out.threads = detail::find_threads(smooth);
+    for (const ScrewThread& thread : out.threads) detail::smooth_thread(thread, smooth);
+  }
+  const std::size_t most = std::max<std::size_t>(4 * static_cast<std::size_t>(options.faces), mesh.triangles.size());
+  const FaceGraph graph = detail::refined_faces(smooth, longest, most);
+  const std::vector<double> diameters = shape_diameters(graph.mesh(), options.diameter, monitor);
+  if (monitor.stopped()) return stopped();
+  monitor.report("clusters", 0);
+  const detail::DiameterClusters clusters =
+      detail::cluster_diameters(graph, diameters, options.max_clusters, options.smoothing, options.seed);
+  out.clusters = clusters.count;
+  if (monitor.stopped()) return stopped();
+  monitor.report("segments", 0);
+  std::vector<int> labels = find_regions(graph, clusters.labels, diagonal, options);
+  if (monitor.stopped()) return stopped();
+  for (int& label : labels) label = std::max(label, 0);
+  gather_pieces(graph, labels, diameters, mesh.triangles.size(), out);
+  list_segments(mesh, out);
+  return out;
+}
+
+}  // namespace mmgrasp

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "geometry/segmentation/convex_parts.hpp"
+#include "mmgrasp/geometry/fit_primitives.hpp"
+
+namespace mmgrasp::detail {
+
+/// The faces of one segment, moved and scaled so that it is of size 1 around the origin.
+struct SegmentSurface {
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< In the mesh [m].
+  double scale = 1;                                  ///< Metres of one unit.
+  std::vector<std::array<Eigen::Vector3d, 3>> corners;
+  std::vector<Eigen::Vector3d> face_normals;
+  std::vector<double> areas;
+  double area = 0;
+  /// Corners with their normals: the mean of the faces there that bend by less than 40 degrees. Each once.
+  std::vector<Eigen::Vector3d> points, normals;
+  RegionHull hull;
+
+  Eigen::Vector3d to_mesh(const Eigen::Vector3d& x) const { return origin + scale * x; }
+};
+
+SegmentSurface segment_surface(const TriangleMesh& mesh, const std::vector<int>& faces);
+
+/// Round primitives with outward surface around at least half a turn (a sphere: a quarter of it), in the mesh's frame.
+std::vector<FittedPrimitive> round_candidates(const SegmentSurface& surface);
+
+/// The box around the segment of the least volume that is aligned with a large flat part of it, or with none.
+FittedPrimitive box_candidate(const SegmentSurface& surface);
+
+}  // namespace mmgrasp::detail

@@ -1,0 +1,284 @@
+// Lower and upper limits of the finger length in an operation: how high the parts stand above the plane of the finger
+// tips, below the fingers' and below the palm's outline.
+#include "mmgrasp/grasp/finger_length_range.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "grasp/assembly/clip_polygon.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
+#include "mmgrasp/core/error.hpp"
+
+namespace mmgrasp {
+namespace {
+
+using detail::HalfPlane;
+using detail::kInfinity;
+using detail::kTwoPi;
+
+constexpr double kTouching = 1e-6;  // [m]
+constexpr int kPalmCorners = 96;    // Of the polygon around the palm; 0.05 % larger.
+constexpr int kMaxLooks = 1000000;
+
+/// A convex outline, endless along the approach.
+class Column {
+ public:
+  explicit Column(std::vector<HalfPlane> sides) : sides_(std::move(sides)) {}
+
+  Column grown(double margin) const {
+    Column out = *this;
+    for (HalfPlane& side : out.sides_) side.d += margin;
+    return out;
+  }
+
+  Eigen::Vector2d middle() const {
+    Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+    for (const Eigen::Vector2d& c : corners()) sum += c;
+    return sum / static_cast<double>(sides_.size());
+  }
+
+  /// The part of a triangle inside: least and largest height, or nothing.
+  bool heights(const std::array<Eigen::Vector3d, 3>& triangle, double& low, double& high) const {
+    std::vector<Eigen::Vector3d> polygon(triangle.begin(), triangle.end());
+    for (const HalfPlane& side : sides_) {
+      polygon = detail::clip_polygon(polygon, side);
+      if (polygon.empty()) return false;
+    }
+    low = kInfinity;
+    high = -kInfinity;
+    for (const Eigen::Vector3d& p : polygon) {
+      low = std::min(low, p.z());
+      high = std::max(high, p.z());
+    }
+    return true;
+  }
+
+  /// Half the size of a square about the origin around it.
+  double reach() const {
+    double out = 0;
+    for (const Eigen::Vector2d& c : corners()) out = std::max(out, c.cwiseAbs().maxCoeff());
+    return out;
+  }
+
+ private:
+  std::vector<Eigen::Vector2d> corners() const {
+    std::vector<Eigen::Vector2d> out;
+    for (std::size_t i = 0; i < sides_.size(); ++i) {
+      const HalfPlane &a = sides_[i], &b = sides_[(i + 1) % sides_.size()];
+      Eigen::Matrix2d lines;
+      lines << a.n.transpose(), b.n.transpose();
+      out.push_back(lines.inverse() * Eigen::Vector2d(a.d, b.d));
+    }
+    return out;
+  }
+
+  std::vector<HalfPlane> sides_;  // In turning order.
+};
+
+/// A finger between `from` and `to` off the axis; number `i` of `grasp.fingers`.
+Column finger(const AssemblyGrasp& grasp, int i, double from, double to) {
+  const double turn = kTwoPi * i / grasp.fingers;
+  const Eigen::Vector2d out(std::cos(turn), std::sin(turn)), side(-out.y(), out.x());
+  const double half = grasp.width / 2 - kTouching;
+  return Column({{out, to - kTouching}, {side, half}, {-out, -(from + kTouching)}, {-side, half}});
+}
+
+Column palm(const AssemblyGrasp& grasp) {
+  std::vector<HalfPlane> sides;
+  for (int i = 0; i < kPalmCorners; ++i) {
+    const double turn = kTwoPi * i / kPalmCorners;
+    sides.push_back({{std::cos(turn), std::sin(turn)}, grasp.palm_radius - kTouching});
+  }
+  return Column(std::move(sides));
+}
+
+/// From the pose's parent to heights: x and y in the plane of the tips, z towards the palm.
+Eigen::Isometry3d height_frame(const Pose& T_parent_tool) {
+  Eigen::Isometry3d flip = Eigen::Isometry3d::Identity();
+  flip.linear() = Eigen::Vector3d(1, -1, -1).asDiagonal();  // Mirrored fingers are the same fingers.
+  return flip * T_parent_tool.inverse();
+}
+
+class Range {
+ public:
+  Range(const AssemblyGrasp& grasp, const AssemblyOperation& operation, double step)
+      : grasp_(grasp), operation_(operation), step_(step), palm_(palm(grasp)) {
+    const double r = grasp.opening / 2, back = grasp.thickness;
+    for (int i = 0; i < grasp.fingers; ++i) {
+      closed_.push_back(finger(grasp, i, r, r + back));
+      opening_.push_back(finger(grasp, i, r, r + grasp.clearance + back));
+    }
+    reach_ = palm_.reach();
+    for (const Column& c : opening_) reach_ = std::max(reach_, c.reach());
+  }
+
+  FingerLengthRange run() {
+    const Eigen::Isometry3d from_active = height_frame(grasp_.T_active_tool);
+    for (const PlacedMesh& part : operation_.active) {
+      look(part, from_active * part.pose, from_active * part.pose, opening_, true, 0, "the grasp");
+    }
+    for (std::size_t i = 0; i + 1 < operation_.motion.size(); ++i)
+      follow(operation_.motion[i], operation_.motion[i + 1]);
+    const Eigen::Isometry3d at_end = from_passive(operation_.motion.back());
+    for (const PlacedMesh& part : operation_.passive) {
+      look(part, at_end * part.pose, at_end * part.pose, opening_, true, 0, "the end");
+    }
+    range_.free = range_.shortest <= range_.longest;
+    range_.longest = std::max(range_.longest, 0.0);
+    return range_;
+  }
+
+ private:
+  Eigen::Isometry3d from_passive(const Pose& T_passive_active) const {
+    return height_frame(T_passive_active * grasp_.T_active_tool);
+  }
+
+  void follow(const Pose& from, const Pose& to) {
+    const Eigen::Isometry3d a = from_passive(from), b = from_passive(to);
+    const Eigen::AngleAxisd turn(b.linear() * a.linear().transpose());
+    const Eigen::Vector3d way = b.translation() - a.translation();
+    if (std::abs(turn.angle()) < 1e-12 && way.head<2>().norm() < 1e-12) {
+      for (const PlacedMesh& part : operation_.passive) {
+        look(part, a * part.pose, b * part.pose, closed_, false, 0, "the motion");
+      }
+      return;
+    }
+    const Eigen::Quaterniond qa((from * grasp_.T_active_tool).linear()), qb((to * grasp_.T_active_tool).linear());
+    const double moved = way.norm() + std::abs(turn.angle()) * farthest();
+    const double count = std::ceil(moved / step_);
+    if (!(count < kMaxLooks))
+      throw InvalidInput("step = " + std::to_string(step_) + ": the motion would be looked at more than 1000000 times");
+    const int looks = std::max(1, static_cast<int>(count));
+    const Pose tool_a = from * grasp_.T_active_tool, tool_b = to * grasp_.T_active_tool;
+    for (int k = 0; k <= looks; ++k) {
+      const double s = static_cast<double>(k) / looks;
+      Pose tool = Pose::Identity();
+      tool.translation() = (1 - s) * tool_a.translation() + s * tool_b.translation();
+      tool.linear() = qa.slerp(s, qb).toRotationMatrix();
+      const Eigen::Isometry3d at = height_frame(tool);
+      for (const PlacedMesh& part : operation_.passive) {
+        look(part, at * part.pose, at * part.pose, closed_, false, moved / looks / 2, "the motion");
+      }
+    }
+  }
+
+  /// Of the passive subassembly from the tool's way.
+  double farthest() const {
+    double out = 0;
+    for (const PlacedMesh& part : operation_.passive) {
+      for (const Eigen::Vector3d& v : part.mesh->vertices) {
+        for (const Pose& pose : operation_.motion) {
+          out = std::max(out, (part.pose * v - (pose * grasp_.T_active_tool).translation()).norm());
+        }
+      }
+    }
+    return out;
+  }
+
+  /// A part that moves straight along the approach from `a` to `b`. Fingers that move in or back along it (`passing`)
+  /// allow nothing above their tips.
+  void look(const PlacedMesh& part, const Eigen::Isometry3d& a, const Eigen::Isometry3d& b,
+            const std::vector<Column>& fingers, bool passing, double margin, const char* when) {
+    const double rise = b.translation().z() - a.translation().z();
+    const double up = std::max(rise, 0.0), down = std::min(rise, 0.0);
+    const Column palm = palm_.grown(margin);
+    std::vector<Column> grown;
+    for (const Column& c : fingers) grown.push_back(c.grown(margin));
+    const double reach = reach_ + margin;
+    std::vector<Eigen::Vector3d> points;
+    points.reserve(part.mesh->vertices.size());
+    for (const Eigen::Vector3d& v : part.mesh->vertices) points.push_back(a * v);
+    for (const auto& t : part.mesh->triangles) {
+      const std::array<Eigen::Vector3d, 3> corners{points[t[0]], points[t[1]], points[t[2]]};
+      if (std::max({corners[0].z(), corners[1].z(), corners[2].z()}) + up + margin <= kTouching) continue;
+      const Eigen::Vector3d low = corners[0].cwiseMin(corners[1]).cwiseMin(corners[2]);
+      const Eigen::Vector3d high = corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]);
+      if (low.head<2>().maxCoeff() > reach || high.head<2>().minCoeff() < -reach) continue;
+      double least = 0, most = 0;
+      if (palm.heights(corners, least, most)) raise(most + up + margin, part, when);
+      for (const Column& c : grown) {
+        if (c.heights(corners, least, most)) block(least + down - margin, most + up + margin, passing, part, when);
+      }
+    }
+    if (!part.mesh->closed) return;
+    const Eigen::Isometry3d back = a.inverse();
+    for (const Column& c : grown) {  // A tip deep inside meets no surface.
+      const Eigen::Vector2d middle = c.middle();
+      if (mesh_contains(*part.mesh, back * Eigen::Vector3d(middle.x(), middle.y(), kTouching)))
+        block(-kInfinity, kInfinity, passing, part, when);
+    }
+  }
+
+  /// The palm's outline has something up to this height.
+  void raise(double height, const PlacedMesh& part, const char* when) {
+    if (height - kTouching <= range_.shortest) return;
+    range_.shortest = height;
+    range_.shortest_by = part.name + " at " + when;
+  }
+
+  /// A finger's outline has something between these heights.
+  void block(double low, double high, bool passing, const PlacedMesh& part, const char* when) {
+    if (high <= kTouching) return;
+    const double longest = passing ? 0 : std::max(low, 0.0);
+    if (longest >= range_.longest) return;
+    range_.longest = longest <= kTouching ? 0 : longest;
+    range_.longest_by = part.name + " at " + when;
+    if (range_.longest == 0) range_.longest = -1;  // No length at all.
+  }
+
+  const AssemblyGrasp& grasp_;
+  const AssemblyOperation& operation_;
+  double step_;
+  Column palm_;
+  std::vector<Column> closed_, opening_;
+  double reach_ = 0;
+  FingerLengthRange range_;
+};
+
+bool is_pose(const Pose& pose) {
+  return pose.matrix().allFinite() && (pose.linear() * pose.linear().transpose()).isIdentity(1e-6) &&
+         pose.linear().determinant() > 0;
+}
+
+void check_parts(const std::vector<PlacedMesh>& parts, const std::string& field) {
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const std::string at = field + "[" + std::to_string(i) + "]";
+    if (!parts[i].mesh) throw InvalidInput(at + ".mesh is missing");
+    if (!is_pose(parts[i].pose)) throw InvalidInput(at + ".pose is no pose: rotation and translation expected");
+  }
+}
+
+}  // namespace
+
+void AssemblyOperation::check() const {
+  if (active.empty()) throw InvalidInput("active is empty: an operation moves at least one part");
+  check_parts(active, "active");
+  check_parts(passive, "passive");
+  if (motion.empty()) throw InvalidInput("motion is empty: give T_passive_active at the operation's end at least");
+  for (std::size_t i = 0; i < motion.size(); ++i) {
+    if (!is_pose(motion[i])) throw InvalidInput("motion[" + std::to_string(i) + "] is no pose");
+  }
+}
+
+void AssemblyGrasp::check() const {
+  require(fingers == 2 || fingers == 3, "fingers", fingers, "must be 2 or 3");
+  const auto positive = [](const char* field, double value) {
+    require(std::isfinite(value) && value > 10 * kTouching, field, value, "must be a length above 1e-5 [m]");
+  };
+  positive("opening", opening);
+  positive("width", width);
+  positive("thickness", thickness);
+  positive("palm_radius", palm_radius);
+  require(std::isfinite(clearance) && clearance >= 0, "clearance", clearance, "must be at least 0 [m]");
+  if (!is_pose(T_active_tool)) throw InvalidInput("T_active_tool is no pose: rotation and translation expected");
+}
+
+FingerLengthRange finger_length_range(const AssemblyGrasp& grasp, const AssemblyOperation& operation, double step) {
+  grasp.check();
+  operation.check();
+  require(std::isfinite(step) && step > 0, "step", step, "must be a positive length [m]");
+  return Range(grasp, operation, step).run();
+}
+
+}  // namespace mmgrasp

@@ -1,0 +1,67 @@
+"""`mmgrasp grippers`: the least set of grippers for an assembly, each as URDF, SRDF and printable finger, and a report."""
+
+from __future__ import annotations
+
+import argparse
+import json
+
+from rich.console import Console
+
+from .._core import Outcome
+from .._files import printable, write_file
+from ..grippers.assembly_file import load_assembly
+from ..grippers.output import GRIPPER_FILES, result_to_dict, write_results
+from ..grippers.planning import GripperPlan, plan_grippers
+from .console import Reporter
+from .output_folder import OutputFolder
+
+DONE, NO_PLAN, INTERRUPTED = 0, 3, 130
+
+
+def run_grippers(arguments: argparse.Namespace, console: Console) -> int:
+    folder = OutputFolder(arguments.out, GRIPPER_FILES)
+    with Reporter(console) as report:
+        report("reading", 0.0)
+        plan = plan_grippers(load_assembly(arguments.assembly), progress=report)
+        report("writing", 0.0)
+        from ..viz.gripper_report import gripper_report_html
+
+        with folder.filled() as draft:
+            write_results(plan, draft)
+            if not arguments.no_pictures:
+                from ..viz.gripper_pictures import write_gripper_pictures
+
+                write_gripper_pictures(plan, draft, report)
+            write_file(draft / "report.html", gripper_report_html(plan, draft))
+        report("writing", 1.0)
+    if arguments.json:
+        print(json.dumps(result_to_dict(plan), indent=1, allow_nan=False))
+    else:
+        _print(plan, console)
+        console.print(f"report: {printable(str(arguments.out / 'report.html'))}", markup=False, soft_wrap=True)
+    if plan.outcome == Outcome.stopped:
+        return INTERRUPTED
+    return DONE if plan.solved else NO_PLAN
+
+
+def _print(plan: GripperPlan, console: Console) -> None:
+    from ..viz.gripper_report import proof
+
+    result = plan.result
+    if not plan.solved or result is None:
+        console.print(f"no grippers: {plan.outcome.name.replace('_', ' ')}", style="bold red", markup=False)
+        faults = plan.missing + ([] if result is None else list(result.explanations))
+        faults += [f"{step}: {met}" for step, met in plan.rehearsed.items() if met]
+        for fault in faults:
+            console.print(f"- {fault}", markup=False, soft_wrap=True)
+        return
+    console.print(f"{len(result.grippers)} grippers for {len(result.parts)} operations: {proof(plan)}", markup=False)
+    for i, gripper in enumerate(result.grippers):
+        takes = [part for part, which in zip(result.parts, result.gripper_of_part, strict=True) if which == i]
+        console.print(
+            f"- {gripper.name}: {gripper.actuator}, {gripper.fingers} fingers of {1e3 * gripper.finger_length:.1f} mm, opens from "
+            f"{1e3 * gripper.min_opening:.1f} to {1e3 * gripper.max_opening:.1f} mm: {', '.join(takes)}",
+            markup=False,
+            soft_wrap=True,
+        )
+    console.print(f"- {result.changes} changes of the gripper", markup=False)

@@ -1,0 +1,158 @@
+"""`mmgrasp segment`: the simple bodies that a part is composed of, the primitives that stand for them and the widths at which they can be held."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+from .. import _core
+from .._core import InvalidInput
+from .._files import printable, write_file
+from ..scan.objects import pose_to_dict
+from .console import Reporter
+from .output_folder import LIST, OutputFolder
+
+DONE = 0
+FORMAT, VERSION = "mmgrasp-segments", 1
+METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inch": 0.0254}
+FILES = ("segments.json", "segments.png", "diameters.png", LIST)
+_SMALLEST, _LARGEST = 0.001, 3.0  # of a part that a gripper takes: its diagonal [m]
+_UNKNOWN_SHARE = 0.2
+
+
+def run_segment(arguments: argparse.Namespace, console: Console) -> int:
+    folder = None if arguments.out is None else OutputFolder(arguments.out, FILES)
+    with Reporter(console) as report:
+        report("reading", 0.0)
+        mesh = _core.Mesh.load(str(arguments.mesh), scale=METRES[arguments.unit])
+        points = mesh.vertices
+        size = np.ptp(points, axis=0)
+        _check_size(arguments, float(np.linalg.norm(size)))
+        found = _core.segment_mesh(mesh, seed=arguments.seed, threads=arguments.threads, progress=report)
+        report("primitives", 0.0)
+        primitives = _core.fit_primitives(mesh, found.labels)
+        content = segments_to_dict(arguments, mesh, size, found, primitives)
+        if folder is not None:
+            report("writing", 0.0)
+            with folder.filled() as draft:
+                write_file(draft / "segments.json", json.dumps(content, indent=1, allow_nan=False) + "\n")
+                if not arguments.no_pictures:
+                    from ..viz.segment_pictures import write_segment_pictures
+
+                    write_segment_pictures(points, mesh.triangles, found.labels, found.diameters, draft)
+            report("writing", 1.0)
+    if arguments.json:
+        print(json.dumps(content, indent=1, allow_nan=False))
+    else:
+        _print(content, arguments.out, console)
+    return DONE
+
+
+def _check_size(arguments: argparse.Namespace, diagonal: float) -> None:
+    if _SMALLEST <= diagonal <= _LARGEST:
+        return
+    fits = [u for u, m in METRES.items() if _SMALLEST <= diagonal / METRES[arguments.unit] * m <= 0.5 * _LARGEST]
+    raise InvalidInput(
+        f"{printable(str(arguments.mesh))}: would be {diagonal:.4g} m across with --unit {arguments.unit}; a part for a gripper is from "
+        f"{_SMALLEST:g} m to {_LARGEST:g} m" + (f": the file may be in {' or '.join(fits)}" if fits else "")
+    )
+
+
+def segments_to_dict(
+    arguments: argparse.Namespace,
+    mesh: _core.Mesh,
+    size: np.ndarray,
+    found: _core.MeshSegmentation,
+    primitives: list[_core.FittedPrimitive],
+) -> dict[str, Any]:
+    notes = []
+    if not mesh.closed:
+        notes.append("the mesh is open: walls around its gaps may be joined wrongly")
+    if found.turned:
+        notes.append("the mesh was inside out: its faces were turned")
+    unknown = float(np.mean(found.diameters == 0))
+    if unknown > _UNKNOWN_SHARE:
+        notes.append(f"{100 * unknown:.0f} % of the faces have nothing behind them: the mesh may be a sheet")
+    segments = []
+    for number, (segment, primitive) in enumerate(zip(found.segments, primitives, strict=True), start=1):
+        widths = [
+            {"width": w.width, "axis": [float(x) for x in w.axis], "covered": w.covered} for w in primitive.widths
+        ]
+        segments.append(
+            {
+                "segment": number,
+                "faces": len(segment.faces),
+                "area": segment.area,
+                "diameter": segment.diameter,
+                "threaded": segment.threaded,
+                "primitive": primitive.kind,
+                "T_mesh_primitive": pose_to_dict(primitive.T_mesh_primitive),
+                "size": [float(x) for x in primitive.size],
+                "volume": primitive.volume,
+                "hull_volume": primitive.hull_volume,
+                "deviation": primitive.deviation,
+                "widths": [] if segment.threaded else widths,
+            }
+        )
+    threads = [
+        {
+            "T_mesh_thread": pose_to_dict(t.T_mesh_thread),
+            "diameter": 2 * t.crest_radius,
+            "pitch": t.pitch,
+            "length": t.length,
+        }
+        for t in found.threads
+    ]
+    return {
+        "format": FORMAT,
+        "version": VERSION,
+        "mesh": str(arguments.mesh),
+        "unit": arguments.unit,
+        "triangles": len(found.labels),
+        "closed": mesh.closed,
+        "size": [float(x) for x in size],
+        "notes": notes,
+        "threads": threads,
+        "segments": segments,
+        "labels": [int(x) + 1 for x in found.labels],
+    }
+
+
+def _print(content: dict[str, Any], out: Path | None, console: Console) -> None:
+    across = " x ".join(f"{1e3 * x:.4g}" for x in content["size"])
+    console.print(
+        f"{printable(content['mesh'])}: {content['triangles']} triangles, {across} mm", markup=False, soft_wrap=True
+    )
+    table = Table(title="segments; sizes in mm, share of a width's contact that is surface in brackets")
+    for column in ("no.", "primitive", "size", "thickness", "volume", "widths"):
+        table.add_column(column, justify="right" if column in ("no.", "thickness", "volume") else "left")
+    for row in content["segments"]:
+        ratio = row["volume"] / row["hull_volume"] if row["hull_volume"] > 0 else float("nan")
+        widths = ", ".join(f"{1e3 * w['width']:.2f} ({100 * w['covered']:.0f} %)" for w in row["widths"])
+        table.add_row(
+            str(row["segment"]),
+            row["primitive"],
+            " x ".join(f"{1e3 * x:.2f}" for x in row["size"]),
+            f"{1e3 * row['diameter']:.2f}",
+            "-" if np.isnan(ratio) else f"{ratio:.2f} of hull",
+            "thread: not to be held" if row["threaded"] else widths or "no surface to hold",
+        )
+    console.print(table)
+    for thread in content["threads"]:
+        hand = "right" if thread["pitch"] > 0 else "left"
+        console.print(
+            f"thread: diameter {1e3 * thread['diameter']:.2f} mm, pitch {1e3 * abs(thread['pitch']):.2f} mm, {hand}-handed, "
+            f"{1e3 * thread['length']:.1f} mm long",
+            markup=False,
+            soft_wrap=True,
+        )
+    for note in content["notes"]:
+        console.print(f"note: {note}", markup=False, soft_wrap=True)
+    if out is not None:
+        console.print(f"written: {printable(str(out / 'segments.json'))}", markup=False, soft_wrap=True)

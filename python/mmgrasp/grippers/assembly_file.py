@@ -1,0 +1,271 @@
+"""Assembly files: one YAML file that says which parts are joined in which order, and which drives are at hand (docs/assembly_format.md)."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._core import GripperActuator, InvalidInput, Mesh
+from .._files import ASSETS, shipped
+from ..documents.reading import Node, near_miss, read_yaml
+from ..scenario.robot_section import find_file
+from .turned_parts import block, turned
+
+Pose = NDArray[np.float64]
+
+UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001}
+LARGEST_PART, SMALLEST_PART = 2.0, 0.0005  # [m]
+SET_OPTIONS = ("change_cost", "time_limit", "max_nodes")
+
+
+@dataclass
+class AssemblyPart:
+    """A part where it is in the finished assembly."""
+
+    name: str
+    mesh: Mesh
+    pose: Pose
+    """T_assembly_mesh."""
+    keep_off: list[int] = field(default_factory=list)
+    """Segments that no finger may touch."""
+    source: str = ""
+
+
+@dataclass
+class AssemblyStep:
+    """One operation: parts that are brought to their places together."""
+
+    name: str
+    active: list[str]
+    passive: list[str]
+    path: list[Pose]
+    """Of the active parts, from before the operation to their places: T_assembly_active where each place is the identity."""
+
+
+@dataclass
+class FingerChoice:
+    """Straight fingers that may be made [m]."""
+
+    width: float = 0.015
+    thickness: float = 0.008
+    clearance: float = 0.002
+    shortest: float = 0.01
+    longest: float = 0.15
+    opening_margin: float = 0.0
+    length_margin: float = 0.0
+    min_contact: float = 0.003
+    directions: int = 12
+
+
+@dataclass
+class Assembly:
+    """An assembly with everything resolved, in metres."""
+
+    name: str
+    source: str
+    parts: dict[str, AssemblyPart]
+    steps: list[AssemblyStep]
+    actuators: list[GripperActuator]
+    fingers: FingerChoice
+    options: dict[str, Any] = field(default_factory=dict)
+    """Of minimal_grippers."""
+    unit: str = "m"
+
+    def __repr__(self) -> str:
+        return f"Assembly({self.name!r}, {len(self.parts)} parts, {len(self.steps)} operations)"
+
+
+def shipped_assembly(path: str | os.PathLike[str]) -> Path:
+    """The file of an assembly: `asset:...`, the name of a shipped one, or a path."""
+    text = os.fspath(path)
+    known = {p.stem: p for p in sorted((ASSETS / "assemblies").glob("*.yaml"))}
+    if text in known and not Path(text).exists():
+        return known[text]
+    if "." not in text and os.sep not in text and not Path(text).exists():
+        raise InvalidInput(f"assembly = {text!r}: no such file, nor a shipped assembly{near_miss(text, list(known))}")
+    return shipped(path)
+
+
+def load_assembly(path: str | os.PathLike[str]) -> Assembly:
+    """Reads an assembly: a file, or the name of a shipped one ("pulley").
+
+    Raises InvalidInput or IoError with one message that names file, line, key, value and rule.
+    """
+    file = shipped_assembly(path)
+    root = read_yaml(file).root
+    if not isinstance(root.raw, dict) or "format" not in root.raw:
+        raise InvalidInput(f"{root.document.source}: is no assembly: the key format: mmgrasp-assembly is missing")
+    root["format"].choice("mmgrasp-assembly")
+    root.read_version(1)
+    root.mapping("format version name unit parts order actuators", "fingers options")
+    unit = root["unit"].choice(*UNITS)
+    scale = UNITS[unit]
+    parts: dict[str, AssemblyPart] = {}
+    for node in root["parts"].elements():
+        part = _read_part(node, scale, unit)
+        if part.name in parts:
+            node["name"].fail("is there twice: parts must have names of their own")
+        parts[part.name] = part
+    return Assembly(
+        root["name"].label(),
+        str(file.resolve()),
+        parts,
+        _read_order(root["order"], parts, scale),
+        [_read_actuator(node, scale) for node in _filled(root["actuators"])],
+        _read_fingers(root, scale),
+        _read_options(root),
+        unit,
+    )
+
+
+def _filled(node: Node) -> list[Node]:
+    elements = node.elements()
+    if not elements:
+        node.fail("must not be empty")
+    return elements
+
+
+def _pose(node: Node, scale: float) -> Pose:
+    out = node.pose().copy()
+    out[:3, 3] *= scale
+    return out
+
+
+def _read_part(node: Node, scale: float, unit: str) -> AssemblyPart:
+    node.mapping("name", "mesh turned box pose keep_off")
+    name = node["name"].label()
+    kinds = [key for key in ("mesh", "turned", "box") if key in node]
+    if len(kinds) != 1:
+        node.fail("must have one of mesh, turned and box")
+    source = ""
+    if kinds == ["mesh"]:
+        source = find_file(node["mesh"])
+        mesh = Mesh.load(source, [scale] * 3)
+    elif kinds == ["turned"]:
+        mesh = _turned(node["turned"], scale)
+    else:
+        sizes = node["box"].numbers(3, above=0)
+        mesh = block(np.array(sizes) * scale)
+    vertices = np.asarray(mesh.vertices)
+    size = float(np.linalg.norm(vertices.max(axis=0) - vertices.min(axis=0)))
+    if not SMALLEST_PART <= size <= LARGEST_PART:
+        node[kinds[0]].fail(
+            f"is {size:.4g} m from corner to corner with unit: {unit}; parts from {SMALLEST_PART:g} to {LARGEST_PART:g} m "
+            "can be held: is another unit meant?"
+        )
+    keep_off = [segment.integer(least=0) for segment in node["keep_off"].elements()] if "keep_off" in node else []
+    pose = _pose(node["pose"], scale) if "pose" in node else np.eye(4)
+    return AssemblyPart(name, mesh, pose, keep_off, source)
+
+
+def _turned(node: Node, scale: float) -> Mesh:
+    rows = node.array(2)
+    if len(rows) < 3:
+        node.fail("must have at least three rows [radius, z]")
+    if (rows[:, 0] < 0).any():
+        node.fail("radii must be at least 0")
+    mesh = turned(rows * scale)
+    if not mesh.closed:
+        node.fail("must be a closed profile of [radius, z] that does not cross itself")
+    return mesh
+
+
+def _names(node: Node, known: dict[str, AssemblyPart]) -> list[str]:
+    out = []
+    for element in _filled(node):
+        name = element.string()
+        if name not in known:
+            element.fail(f"is no part{near_miss(name, list(known))}")
+        if name in out:
+            element.fail("is there twice")
+        out.append(name)
+    return out
+
+
+def _read_order(node: Node, parts: dict[str, AssemblyPart], scale: float) -> list[AssemblyStep]:
+    steps: list[AssemblyStep] = []
+    placed: list[str] = []
+    for element in _filled(node):
+        element.mapping("", "part parts onto from path name")
+        if ("part" in element) == ("parts" in element):
+            element.fail("must have one of part and parts")
+        if "part" in element:
+            name = element["part"].string()
+            if name not in parts:
+                element["part"].fail(f"is no part{near_miss(name, list(parts))}")
+            active = [name]
+        else:
+            active = _names(element["parts"], parts)
+        twice = [name for name in active if name in placed]
+        if twice:
+            element.fail(f"{twice[0]} was brought to its place before: an order names a part once")
+        if "onto" in element:
+            passive = _names(element["onto"], parts)
+            both = [name for name in passive if name in active]
+            if both:
+                element["onto"].fail(f"{both[0]} cannot be moved and stay")
+        else:
+            passive = list(placed)
+        if "from" in element and "path" in element:
+            element.fail("give from or path, not both")
+        if "from" in element:
+            path = [_pose(element["from"], scale), np.eye(4)]
+        elif "path" in element:
+            path = [_pose(pose, scale) for pose in _filled(element["path"])] + [np.eye(4)]
+        else:
+            path = [np.eye(4)]
+        name = element["name"].label() if "name" in element else " + ".join(active)
+        if name in [step.name for step in steps]:
+            element.fail(f"an operation named {name} is there already: give it a name of its own")
+        steps.append(AssemblyStep(name, active, passive, path))
+        placed += active
+    return steps
+
+
+def _read_actuator(node: Node, scale: float) -> GripperActuator:
+    node.mapping("name fingers stroke", "max_opening cost")
+    fingers = node["fingers"].integer()
+    if fingers not in (2, 3):
+        node["fingers"].fail("must be 2 or 3")
+    stroke = node["stroke"].number(above=0) * scale
+    widest = node["max_opening"].number(above=0) * scale if "max_opening" in node else None
+    if widest is not None and widest < stroke:
+        node["max_opening"].fail("must be at least the stroke")
+    cost = node["cost"].number(above=0) if "cost" in node else 1.0
+    return GripperActuator(node["name"].label(), stroke, fingers=fingers, max_opening=widest, cost=cost)
+
+
+def _read_fingers(root: Node, scale: float) -> FingerChoice:
+    choice = FingerChoice()
+    if "fingers" not in root:
+        return choice
+    node = root["fingers"]
+    lengths = "width thickness clearance shortest longest opening_margin length_margin min_contact"
+    node.mapping("", lengths + " directions")
+    for key, value in node.items():
+        if key == "directions":
+            choice.directions = value.integer(least=1)
+            if choice.directions > 360:
+                value.fail("must be at most 360")
+        elif key in ("clearance", "opening_margin", "length_margin"):
+            setattr(choice, key, value.number(least=0) * scale)
+        else:
+            setattr(choice, key, value.number(above=0) * scale)
+    if choice.longest < choice.shortest:
+        node.fail(f"longest = {choice.longest / scale:g} must be at least shortest = {choice.shortest / scale:g}")
+    return choice
+
+
+def _read_options(root: Node) -> dict[str, Any]:
+    if "options" not in root:
+        return {}
+    node = root["options"].mapping("", " ".join(SET_OPTIONS))
+    out: dict[str, Any] = {}
+    for key, value in node.items():
+        out[key] = value.integer(least=1) if key == "max_nodes" else value.number(least=0)
+    return out

@@ -1,0 +1,76 @@
+"""The sections `preferences` and `limits` of a pipe problem: what counts how much, and what may not be exceeded."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .._core import InvalidInput, pairwise_weights
+from ..documents.reading import Node
+from .structure_section import STIFFEST
+
+OBJECTIVES = ("motion", "deflection", "manipulability")
+"""Joint motion (O1), sag (O2), force manipulability (O3) of P2 3.2.3.3, in this order in comparison matrices, too."""
+
+
+@dataclass(frozen=True)
+class Preferences:
+    """Options of the search, and where they come from."""
+
+    options: dict[str, float]
+    """Weights and scales as ObjectPathOptions calls them; empty: the library's own."""
+    source: str = "P2's comparison matrix, the default"
+    consistency_ratio: float | None = None
+    """Of the comparison matrix, when one was given."""
+
+
+def read_preferences(root: Node) -> Preferences:
+    """Weights, or a comparison matrix by Saaty's method, and the scales of the three objectives."""
+    if "preferences" not in root:
+        return Preferences({})
+    node = root["preferences"].mapping("", "weights comparison scales")
+    if "weights" in node and "comparison" in node:
+        node.fail("give weights or a comparison, not both")
+    options: dict[str, float] = {}
+    ratio, source = None, Preferences.source
+    if "weights" in node:
+        given = node["weights"].mapping(" ".join(OBJECTIVES))
+        options = {f"{key}_weight": given[key].number(least=0) for key in OBJECTIVES}
+        if not any(options.values()):
+            node["weights"].fail("at least one must be above zero")
+        source = "weights given"
+    if "comparison" in node:
+        rows = node["comparison"].elements()
+        if len(rows) != len(OBJECTIVES):
+            node["comparison"].fail("must be three rows: " + ", ".join(OBJECTIVES))
+        matrix = [row.numbers(len(OBJECTIVES), above=0) for row in rows]
+        try:
+            found = pairwise_weights(matrix)
+        except InvalidInput as error:
+            raise InvalidInput(f"{node['comparison'].place}: {node['comparison'].name}: {error}") from None
+        options = {f"{key}_weight": float(w) for key, w in zip(OBJECTIVES, found.weights, strict=True)}
+        ratio = float(found.consistency_ratio)
+        source = "comparison matrix given"
+    if "scales" in node:
+        scales = node["scales"].mapping("", " ".join(OBJECTIVES))
+        options |= {f"{key}_scale": value.number(above=0) for key, value in scales.items()}
+    return Preferences(options, source, ratio)
+
+
+@dataclass(frozen=True)
+class Limits:
+    """0: none."""
+
+    sag: float = 0.0
+    """Largest displacement at any pose [m]."""
+    stress: float = 0.0
+    """Von Mises [Pa]."""
+
+
+def read_limits(root: Node) -> Limits:
+    if "limits" not in root:
+        return Limits()
+    node = root["limits"].mapping("", "sag stress")
+    return Limits(
+        node["sag"].number(above=0) if "sag" in node else 0.0,
+        node["stress"].number(above=0, most=STIFFEST) if "stress" in node else 0.0,
+    )

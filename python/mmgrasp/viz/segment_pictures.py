@@ -1,0 +1,51 @@
+"""Pictures of a part's segments and shape diameters, from two opposite sides."""
+
+from __future__ import annotations
+
+import colorsys
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from .png import write_png
+from .style import TRAY_COLOURS
+from .two_sides import Body, two_sides
+
+_SHADES = 12
+
+
+def segment_colour(index: int) -> str:
+    """Eight colours that everybody can tell apart, then others around the circle."""
+    if index < len(TRAY_COLOURS):
+        return TRAY_COLOURS[index]
+    return _hex(colorsys.hsv_to_rgb((0.618 * index) % 1, 0.45, 0.8))
+
+
+def coloured(
+    vertices: np.ndarray, triangles: np.ndarray, groups: np.ndarray, colour: Callable[[int], str]
+) -> list[Body]:
+    """One body for each group of triangles."""
+    return [(vertices, triangles[groups == group], colour(int(group))) for group in np.unique(groups)]
+
+
+def write_segment_pictures(
+    vertices: np.ndarray, triangles: np.ndarray, labels: np.ndarray, diameters: np.ndarray, folder: Path
+) -> None:
+    """segments.png, a colour a segment, and diameters.png, thin (blue) to thick (red) by rank."""
+    write_png(folder / "segments.png", two_sides(coloured(vertices, triangles, labels, segment_colour)))
+    shades = np.zeros(len(labels), dtype=int)
+    if np.ptp(diameters) > 0:
+        share = (np.log(np.maximum(diameters, 1e-9)) - np.log(np.quantile(diameters[diameters > 0], 0.02))) / max(
+            1e-9, np.log(np.quantile(diameters, 0.98) / np.quantile(diameters[diameters > 0], 0.02))
+        )
+        shades = np.clip(share * _SHADES, 0, _SHADES - 1).astype(int)
+
+    def shade(index: int) -> str:
+        return _hex(colorsys.hsv_to_rgb(0.66 * (1 - index / (_SHADES - 1)), 0.75, 0.9))
+
+    write_png(folder / "diameters.png", two_sides(coloured(vertices, triangles, shades, shade)))
+
+
+def _hex(colour: tuple[float, float, float]) -> str:
+    return "#" + "".join(f"{round(255 * c):02X}" for c in colour)

@@ -1,0 +1,127 @@
+"""`mmgrasp grippers`: from an assembly's file to grippers that were rehearsed, and what is wrong with a file."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import yaml
+
+import mmgrasp as mg
+from mmgrasp.cli import main
+from mmgrasp.grippers import load_assembly, plan_grippers
+from mmgrasp.grippers.assembly_file import shipped_assembly
+from mmgrasp.grippers.planning import GripperPlan, operation_of
+from mmgrasp.grippers.rehearsal import rehearse
+from mmgrasp.grippers.turned_parts import block, turned
+
+
+@pytest.fixture(scope="module")
+def pulley() -> GripperPlan:
+    return plan_grippers(load_assembly("pulley"))
+
+
+def changed(tmp_path: Path, **changes: Any) -> Path:
+    """The shipped assembly with some top-level keys changed."""
+    content = yaml.safe_load(shipped_assembly("pulley").read_text())
+    content.update(changes)
+    file = tmp_path / "assembly.yaml"
+    file.write_text(yaml.safe_dump(content))
+    return file
+
+
+def test_turned_parts_are_solids() -> None:
+    ring = turned([[0.01, 0.0], [0.02, 0.0], [0.02, 0.005], [0.01, 0.005]])
+    assert ring.closed
+    sides = 64
+    area = sides / 2 * np.sin(2 * np.pi / sides) * (0.02**2 - 0.01**2)
+    assert ring.volume == pytest.approx(area * 0.005)
+    cone = turned([[0.0, 0.0], [0.01, 0.0], [0.0, 0.03]])
+    assert cone.closed
+    assert block([0.1, 0.2, 0.3]).volume == pytest.approx(0.006)
+
+
+def test_the_shipped_assembly_gets_grippers_that_were_rehearsed(pulley: GripperPlan) -> None:
+    assert pulley.solved
+    assert pulley.result is not None
+    assert pulley.result.lower_bound == len(pulley.result.grippers)
+    assert set(pulley.rehearsed) == {step.name for step in pulley.assembly.steps}
+    # The shaft stands 24 mm out of the sleeve's top at 36 mm, the tips lie below it.
+    sleeve = [r for r in pulley.requirements if r.part == "sleeve" and r.fingers == 3]
+    assert sleeve and min(r.min_finger_length for r in sleeve) >= 0.044
+    for i, part in enumerate(pulley.result.parts):
+        requirement = pulley.requirements[pulley.result.requirement_of_part[i]]
+        assert requirement.part == part
+        assert pulley.result.grippers[pulley.result.gripper_of_part[i]].holds(requirement)
+
+
+def test_rehearsal_meets_what_too_short_fingers_would(pulley: GripperPlan) -> None:
+    assert pulley.result is not None
+    i = pulley.result.parts.index("sleeve")
+    grasp = pulley.grasps[pulley.result.requirement_of_part[i]]
+    gripper = pulley.result.grippers[pulley.result.gripper_of_part[i]]
+    step = pulley.assembly.steps[i]
+    numbers = gripper.to_dict()
+    asked = pulley.requirements[pulley.result.requirement_of_part[i]].min_finger_length
+    short = mg.gripper_design.Gripper(**{**numbers, "finger_length": asked - 0.001})
+    just = mg.gripper_design.Gripper(**{**numbers, "finger_length": asked + 1e-5})
+    assert rehearse(pulley.assembly, just, grasp, operation_of(pulley.assembly, step)) == ""
+    assert "shaft" in rehearse(pulley.assembly, short, grasp, operation_of(pulley.assembly, step))
+
+
+def test_command_writes_files_that_load(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["grippers", "pulley", "-o", str(tmp_path / "out")]) == 0
+    printed = capsys.readouterr().out
+    assert "proven: no set of grippers costs less" in printed
+    result = json.loads((tmp_path / "out" / "result.json").read_text())
+    assert result["outcome"] == "solved"
+    for gripper in result["grippers"]:
+        folder = tmp_path / "out" / "grippers" / gripper["name"]
+        robot = mg.Robot.load(folder / "gripper.urdf", srdf=folder / "gripper.srdf")
+        assert robot.group("fingers").upper[0] == pytest.approx((gripper["max_opening"] - gripper["min_opening"]) / 2)
+    assert {o["met"] for o in result["operations"]} == {""}
+    report = (tmp_path / "out" / "report.html").read_text()
+    assert report.count("<img") == 2 * len(result["operations"])
+
+
+def test_what_cannot_be_held_says_why(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = changed(tmp_path, actuators=[{"name": "jaws", "fingers": 2, "stroke": 48, "max_opening": 48}])
+    assert main(["grippers", str(file), "-o", str(tmp_path / "out"), "--no-pictures"]) == 3
+    printed = capsys.readouterr().out
+    assert "no actuator has 3 fingers" in printed
+    assert "sleeve: no segment can be held" in printed
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"unit": "m"}, "is another unit meant?"),
+        ({"unit": "inch"}, "unit = 'inch'"),
+        ({"parts": []}, "is no part"),
+        ({"order": []}, "must not be empty"),
+        ({"order": [{"part": "shaft"}, {"part": "shaft"}]}, "an order names a part once"),
+        ({"order": [{"part": "shafts"}]}, "did you mean shaft"),
+        ({"order": [{"part": "shaft", "onto": ["shaft"]}]}, "cannot be moved and stay"),
+        ({"actuators": []}, "must not be empty"),
+        ({"actuators": [{"name": "a", "fingers": 4, "stroke": 8}]}, "must be 2 or 3"),
+        ({"fingers": {"longest": 5, "shortest": 10}}, "must be at least shortest"),
+        ({"fingers": {"lenght": 5}}, "lenght"),
+        ({"parts": [{"name": "a", "turned": [[1, 0], [1, 1]]}]}, "at least three rows"),
+        ({"parts": [{"name": "a", "mesh": "a.stl", "box": [1, 1, 1]}]}, "one of mesh, turned and box"),
+        ({"parts": [{"name": "a", "mesh": "no_such.stl"}]}, "no_such.stl"),
+        ({"version": 9}, "version"),
+        ({"format": "mmgrasp-scenario"}, "mmgrasp-assembly"),
+    ],
+)
+def test_mistakes_in_the_file_are_named(
+    tmp_path: Path, changes: dict[str, Any], message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = changed(tmp_path, **changes)
+    assert main(["grippers", str(file), "-o", str(tmp_path / "out")]) == 2
+    error = capsys.readouterr().err
+    assert message in " ".join(error.split())
+    assert "Traceback" not in error
+    assert not (tmp_path / "out" / "result.json").exists()

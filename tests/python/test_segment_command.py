@@ -1,0 +1,86 @@
+"""`mmgrasp segment`: what it writes and prints, and what it refuses."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import mmgrasp as mg
+from mmgrasp.cli import main
+
+
+def write_stl(path: Path, scale: float = 1.0, drop: int = 0, turn: bool = False) -> Path:
+    mesh = mg.LinkShape(mg.Box([0.03, 0.02, 0.01])).surface()
+    corners = scale * mesh.vertices[mesh.triangles]
+    rows = ["solid part"]
+    for corner in corners[drop:]:
+        a, b, c = corner[::-1] if turn else corner
+        points = "".join(f" vertex {p[0]:.9g} {p[1]:.9g} {p[2]:.9g}" for p in (a, b, c))
+        rows.append(f"facet normal 0 0 0 outer loop{points} endloop endfacet")
+    path.write_text("\n".join([*rows, "endsolid part"]) + "\n")
+    return path
+
+
+def test_segments_of_a_box(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    part = write_stl(tmp_path / "part.stl", scale=1000)
+    assert main(["segment", str(part), "--unit", "mm", "-o", str(tmp_path / "out"), "--json"]) == 0
+    printed = json.loads(capsys.readouterr().out)
+    written = json.loads((tmp_path / "out" / "segments.json").read_text())
+    assert printed == written
+    (segment,) = written["segments"]
+    assert segment["primitive"] == "box"
+    assert sorted(w["width"] for w in segment["widths"]) == pytest.approx([0.01, 0.02, 0.03], abs=1e-8)
+    assert written["labels"] == [1] * 12 and written["notes"] == []
+    for picture in ("segments.png", "diameters.png"):
+        assert (tmp_path / "out" / picture).read_bytes().startswith(b"\x89PNG")
+
+
+def test_table_names_widths(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["segment", str(write_stl(tmp_path / "part.stl"))]) == 0
+    out = capsys.readouterr().out
+    assert "box" in out and "20.00 (100" in out
+
+
+def test_open_mesh_inside_out_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    part = write_stl(tmp_path / "part.stl", drop=1, turn=True)
+    assert main(["segment", str(part), "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert not found["closed"]
+    assert any("open" in note for note in found["notes"]) and any("inside out" in note for note in found["notes"])
+    assert len(found["segments"][0]["widths"]) == 3
+
+
+@pytest.mark.parametrize(("scale", "unit"), [(1000.0, "m"), (1e-3, "m"), (1.0, "mm")])
+def test_units_that_cannot_be_right(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], scale: float, unit: str
+) -> None:
+    part = write_stl(tmp_path / "part.stl", scale=scale)
+    assert main(["segment", str(part), "--unit", unit]) == 2
+    said = capsys.readouterr().err
+    assert "m across" in said and str(part) in said
+    if scale == 1000.0:
+        assert "mm" in said
+
+
+def test_a_number_that_is_none(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    part = write_stl(tmp_path / "part.stl")
+    part.write_text(part.read_text().replace("vertex 0.015", "vertex nan", 1))
+    assert main(["segment", str(part)]) == 2
+    assert "part.stl" in capsys.readouterr().err
+
+
+def test_a_sheet_has_no_thickness(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    part = tmp_path / "sheet.stl"
+    rows = ["solid s"]
+    for a, b, c in (((0, 0, 0), (0.1, 0, 0), (0.1, 0.1, 0)), ((0, 0, 0), (0.1, 0.1, 0), (0, 0.1, 0))):
+        points = "".join(" vertex {} {} {}".format(*p) for p in (a, b, c))
+        rows.append(f"facet normal 0 0 1 outer loop{points} endloop endfacet")
+    part.write_text("\n".join([*rows, "endsolid s"]) + "\n")
+    assert main(["segment", str(part), "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert any("sheet" in note for note in found["notes"])
+    assert all(not segment["widths"] for segment in found["segments"])
+    assert np.isfinite(found["segments"][0]["volume"])

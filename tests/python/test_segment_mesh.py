@@ -1,0 +1,111 @@
+"""Segments of composed parts against the primitives they were made of, the widths that are offered, and real parts."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import mmgrasp as mg
+from composed_parts import Part, composed_parts, faces_right, stepped_shaft
+from conftest import REPOSITORY
+
+DATA = REPOSITORY.parent / "shared" / "data" / "meshes"
+EDGE = 2.0  # of the meshes [mm]
+
+
+def as_mesh(vertices: np.ndarray, triangles: np.ndarray, path: Path) -> mg.Mesh:
+    head = ["ply", "format ascii 1.0", f"element vertex {len(vertices)}"]
+    head += [f"property double {axis}" for axis in "xyz"]
+    head += [f"element face {len(triangles)}", "property list uchar int vertex_indices", "end_header"]
+    rows = [" ".join(f"{x:.12g}" for x in v) for v in vertices] + ["3 {} {} {}".format(*t) for t in triangles]
+    path.write_text("\n".join(head + rows) + "\n")
+    return mg.Mesh.load(path)
+
+
+def segmented(
+    part: Part, noise: float, seed: int, folder: Path
+) -> tuple[mg.Mesh, np.ndarray, mg.grasping.MeshSegmentation]:
+    vertices, triangles, truth = part.mesh(EDGE, noise, seed)
+    mesh = as_mesh(vertices, triangles, folder / "part.ply")
+    assert len(mesh.triangles) == len(truth)
+    return mesh, truth, mg.grasping.segment_mesh(mesh)
+
+
+@pytest.mark.slow
+def test_faces_of_composed_parts(tmp_path: Path) -> None:
+    """50 parts, half of them with noise; threads, fillets, holes and bores among them."""
+    shares = {}
+    for k, (part, noise) in enumerate(composed_parts()):
+        _, truth, found = segmented(part, noise, k, tmp_path)
+        shares[f"{k} {part.name}"] = faces_right(truth, found.labels)
+    worst = sorted(shares.items(), key=lambda item: item[1])[:5]
+    assert np.mean(list(shares.values())) >= 0.95, worst
+
+
+@pytest.mark.slow
+def test_widths_of_composed_parts(tmp_path: Path) -> None:
+    """Every width that is offered for a cylinder of a shaft is its diameter, within 0.1 mm."""
+    offered = 0
+    for seed in range(4):
+        rng = np.random.default_rng((11, seed))
+        part = stepped_shaft(rng, bore=seed % 2 == 1, fillets=False, threaded=False)
+        mesh, truth, found = segmented(part, 0.0, seed, tmp_path)
+        for segment, fit in zip(found.segments, mg.grasping.fit_primitives(mesh, found.labels), strict=True):
+            (true,) = part.widths[np.bincount(truth[segment.faces]).argmax()]
+            assert fit.kind == "cylinder"
+            assert [1e3 * w.width for w in fit.widths] == pytest.approx([true], abs=0.1)
+            offered += 1
+    assert offered >= 8
+
+
+def test_thread_is_found_and_nothing_else_is(tmp_path: Path) -> None:
+    part = stepped_shaft(np.random.default_rng((7, 13)), bore=False, fillets=False, threaded=True)
+    _, truth, found = segmented(part, 0.0, 0, tmp_path)
+    (thread,) = found.threads
+    crest = part.widths[-1][0] / 2
+    assert 1e3 * thread.pitch == pytest.approx(1.5, rel=0.01)
+    assert 1e3 * thread.crest_radius == pytest.approx(crest, abs=0.03)
+    assert 1e3 * thread.root_radius == pytest.approx(crest - 0.9, abs=0.03)
+    assert abs(thread.T_mesh_thread[2, 2]) == pytest.approx(1, abs=1e-4)
+    assert np.mean(truth[thread.faces] == truth.max()) > 0.99
+    assert [s.threaded for s in found.segments].count(True) == 1
+
+
+def test_same_seed_same_segments(tmp_path: Path) -> None:
+    part = stepped_shaft(np.random.default_rng((7, 1)), bore=True, fillets=False, threaded=False)
+    mesh, _, found = segmented(part, 0.0, 0, tmp_path)
+    again = mg.grasping.segment_mesh(mesh, threads=1)
+    assert np.array_equal(found.labels, again.labels)
+
+
+REAL = {  # segments, and the diameters of the round ones that can be measured on the drawing [mm]
+    "nist_factory/factory_insertion/factory_round_peg_8mm_tight.obj": (1.0, [8.0]),
+    "nist_factory/factory_insertion/factory_round_peg_12mm_loose.obj": (1.0, [12.0]),
+}
+
+
+@pytest.mark.parametrize("name", REAL)
+def test_pegs(name: str) -> None:
+    path = DATA / name
+    if not path.exists():
+        pytest.skip(f"{path} is absent")
+    scale, diameters = REAL[name]
+    mesh = mg.Mesh.load(path, scale=scale)
+    found = mg.grasping.segment_mesh(mesh)
+    fits = mg.grasping.fit_primitives(mesh, found.labels)
+    got = sorted(1e3 * w.width for f in fits if f.kind == "cylinder" for w in f.widths)
+    assert got == pytest.approx(diameters, abs=0.1)
+
+
+def test_bad_input() -> None:
+    mesh = mg.LinkShape(mg.Box([0.01, 0.02, 0.03])).surface()
+    with pytest.raises(mg.InvalidInput, match=r"labels = .*one a face"):
+        mg.grasping.fit_primitives(mesh, [0])
+    with pytest.raises(mg.InvalidInput, match="whole number"):
+        mg.grasping.fit_primitives(mesh, np.full(12, 0.5))
+    with pytest.raises(mg.InvalidInput, match="crease"):
+        mg.grasping.segment_mesh(mesh, crease=0)
+    with pytest.raises(mg.InvalidInput, match="smoothing"):
+        mg.grasping.segment_mesh(mesh, smooting=1)

@@ -70,7 +70,13 @@ def scipy_ways() -> dict[str, Callable[[Counted, int], None]]:
 
     def evolution(cost: Counted, seed: int) -> None:
         differential_evolution(
-            cost, cost.bounds, integrality=[True, False, False, True], maxiter=BUDGET // 60 - 1, polish=False, tol=0, rng=seed
+            cost,
+            cost.bounds,
+            integrality=[True, False, False, True],
+            maxiter=BUDGET // 60 - 1,
+            polish=False,
+            tol=0,
+            rng=seed,
         )
 
     def annealing(cost: Counted, seed: int) -> None:

@@ -50,7 +50,7 @@ class Counted:
             return LARGE * LARGE
         self.count += 1
         section = int(np.clip(round(float(x[0])), 0, len(self.pipe.sections) - 1))
-        room = self.pipe.length(section) - 2 * self.margin
+        room = self.pipe.lengths[section] - 2 * self.margin
         at = self.margin + float(np.clip(x[1], 0, 1)) * room
         grasp = self.pipe.grasp(section, at, float(x[2]), bool(round(float(x[3]))), gripper=self.gripper)
         result = self.evaluator.evaluate(grasp)
@@ -70,7 +70,13 @@ def scipy_ways() -> dict[str, Callable[[Counted, int], None]]:
 
     def evolution(cost: Counted, seed: int) -> None:
         differential_evolution(
-            cost, cost.bounds, integrality=[True, False, False, True], maxiter=10_000, polish=False, tol=0, rng=seed
+            cost,
+            cost.bounds,
+            integrality=[True, False, False, True],
+            maxiter=BUDGET // 60 - 1,
+            polish=False,
+            tol=0,
+            rng=seed,
         )
 
     def annealing(cost: Counted, seed: int) -> None:

@@ -87,7 +87,7 @@ TEST(FingerLengthRange, ShaftsThatStandOutAskForLongFingers) {
       EXPECT_TRUE(range.free);
       EXPECT_NEAR(range.shortest, out + depth, 2e-6);
       EXPECT_EQ(range.longest, std::numeric_limits<double>::infinity());
-      EXPECT_EQ(range.shortest_by, "shaft at the motion");
+      EXPECT_EQ(range.shortest_by, "shaft at the end");
       EXPECT_EQ(range.longest_by, "");
     }
   }
@@ -187,8 +187,10 @@ TEST(FingerLengthRange, AgreesWithDrawnPoints) {
       }
     }
     const FingerLengthRange range = finger_length_range(grasp, operation);
-    EXPECT_GE(range.shortest, drawn.palm - 1e-5) << trial;
-    EXPECT_NEAR(range.shortest, drawn.palm, 0.004) << trial;
+    if (range.free) {
+      EXPECT_GE(range.shortest, drawn.palm - 1e-5) << trial;
+      EXPECT_NEAR(range.shortest, drawn.palm, 0.004) << trial;
+    }
     if (drawn.finger > 0) {  // Nothing may stand above the tips when the gripper opens, or come there before.
       EXPECT_FALSE(range.free) << trial;
       ++blocked;

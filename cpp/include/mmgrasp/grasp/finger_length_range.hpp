@@ -42,7 +42,8 @@ struct MMGRASP_EXPORT AssemblyGrasp {
   void check() const;         ///< Throws InvalidInput naming field, value and rule.
 };
 
-/// Which finger lengths take a part through an operation: P1's L- and L+, from the geometry alone.
+/// Which finger lengths take a part through an operation: P1's L- and L+, from the geometry alone. Where there is none,
+/// both are as far as was looked.
 struct MMGRASP_EXPORT FingerLengthRange {
   bool free = false;                                         ///< There is such a length.
   double shortest = 0;                                       ///< The palm meets nothing [m].

@@ -114,8 +114,8 @@ void bind_mesh(py::module_& m) {
             for (const Eigen::VectorXd& row : rows_argument(triangles, "triangles", 3)) {
               std::array<int, 3>& face = faces.emplace_back();
               for (int i = 0; i < 3; ++i) {
-                require(row[i] == std::floor(row[i]) && std::abs(row[i]) < 1e9, "triangles", row[i],
-                        "must be whole numbers");
+                require(row[i] == std::floor(row[i]) && row[i] >= 0 && row[i] < static_cast<double>(points.size()),
+                        "triangles", row[i], "must be numbers of vertices, from 0 on");
                 face[i] = static_cast<int>(row[i]);
               }
             }

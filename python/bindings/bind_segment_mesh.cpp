@@ -120,6 +120,10 @@ void bind_fitted_primitives(py::module_& m) {
       "fit_primitives",
       [](const MeshShape& mesh, const ArrayLike& labels) {
         const Eigen::VectorXd values = vector_argument(labels, "labels");
+        const std::size_t faces = mesh.mesh->triangles.size();
+        if (static_cast<std::size_t>(values.size()) != faces)
+          throw InvalidInput("labels has shape (" + std::to_string(values.size()) + ",): must be (" +
+                             std::to_string(faces) + ",), one a face");
         std::vector<int> numbers;
         for (Eigen::Index i = 0; i < values.size(); ++i) {
           require(values[i] == std::floor(values[i]) && std::abs(values[i]) < 1e9, "labels[" + std::to_string(i) + "]",
@@ -162,7 +166,7 @@ void bind_segment_mesh(py::module_& m) {
   m.def("_mesh_segmentation_option_table", [] { return option_table(mesh_segmentation_fields()); });
   m.def(
       "shape_diameters",
-      [](const MeshShape& mesh, const py::object& progress, const py::kwargs& options) {
+      [](const MeshShape& mesh, const Progress& progress, const py::kwargs& options) {
         const ShapeDiameterOptions read = read_options(diameter_fields(), options, "shape_diameters");
         LongCall call(progress);
         return flat_array(call.run([&](const Monitor& monitor) { return shape_diameters(*mesh.mesh, read, monitor); }));
@@ -176,7 +180,7 @@ void bind_segment_mesh(py::module_& m) {
           .c_str());
   m.def(
       "segment_mesh",
-      [](const MeshShape& mesh, const py::object& progress, const py::kwargs& options) {
+      [](const MeshShape& mesh, const Progress& progress, const py::kwargs& options) {
         const MeshSegmentationOptions read = read_options(mesh_segmentation_fields(), options, "segment_mesh");
         LongCall call(progress);
         return call.run([&](const Monitor& monitor) { return segment_mesh(*mesh.mesh, read, monitor); });

@@ -10,6 +10,7 @@ import numpy as np
 
 import mmgrasp as mg
 from conftest import REPOSITORY
+from mmgrasp.grippers.turned_parts import block
 from mmgrasp.problems.pipe_cells import pipe_robot
 
 CORPUS = REPOSITORY / "tests" / "fuzz" / "corpus"
@@ -94,6 +95,9 @@ VALUES: dict[str, Any] = {
     "acceleration_limits": np.ones(3),
     "size": np.array([0.1, 0.2, 0.3]),
     "labels": np.zeros(12),
+    "Mesh.from_arrays.vertices": np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]),
+    "Mesh.from_arrays.triangles": np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]),
+    "AssemblyOperation.motion": np.array([POSE, POSE]),
     "points": np.array([[1.0, 2, 3], [4, 5, 6]]),
     "centres": np.array([[1.0, 2, 3], [4, 5, 6]]),
     "point": np.array([0.1, 0.2, 0.3]),
@@ -206,6 +210,15 @@ def beam_frame() -> mg.grasping.BeamFrame:
     return mg.grasping.BeamFrame([[0.0, 0, 0], [0.3, 0, 0]], [beam_member()])
 
 
+def tetrahedron() -> mg.Mesh:
+    corners = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    return mg.Mesh.from_arrays(corners, np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]))
+
+
+def cube() -> mg.Mesh:
+    return block([0.1, 0.1, 0.1])
+
+
 def seven_joint_hand() -> mg.Robot:
     return mg.Robot.load(Path(mg.__file__).parent / "assets" / "grippers" / "sdhlike" / "sdhlike.urdf")
 
@@ -250,6 +263,13 @@ COMPANIONS: dict[str, dict[str, Any]] = {
     "JointTrajectory.accelerations": {"velocities": np.zeros((2, 3))},
 }
 OTHERS: dict[str, Any] = {
+    "mesh": tetrahedron,
+    "PlacedMesh.mesh": tetrahedron,
+    "fit_primitives.mesh": cube,
+    "AssemblyOperation.active": lambda: [mg.gripper_design.PlacedMesh("part", tetrahedron())],
+    "AssemblyOperation.passive": list,
+    "centric_grasps.low": lambda: -0.05,
+    "centric_grasps.high": lambda: 0.05,
     "ObjectPathProblem.object": lambda: [BOX],
     "BeamMember.first": lambda: 0,
     "BeamMember.second": lambda: 1,

@@ -6682,7 +6682,7 @@ def segment_depth_image(image: DepthImage, *, plane: SupportingPlane | None = No
         min_points: int = 100  # smaller objects are left out
         plane_iterations: int = 1000  # random planes tried
     """
-def segment_mesh(mesh: Mesh, *, progress: typing.Any | None = None, rays: int = 30, cone: float = 2.0943951023931953, outlier: float = 1.0, ray_lengths: bool = False, max_clusters: int = 8, smoothing: float = 0.3, crease: float = 0.6, min_size: float = 0.02, convexity: float = 0.05, smooth_threads: bool = True, faces: int = 20000, seed: int = 1, threads: int = 0) -> MeshSegmentation:
+def segment_mesh(mesh: Mesh, *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, rays: int = 30, cone: float = 2.0943951023931953, outlier: float = 1.0, ray_lengths: bool = False, max_clusters: int = 8, smoothing: float = 0.3, crease: float = 0.6, min_size: float = 0.02, convexity: float = 0.05, smooth_threads: bool = True, faces: int = 20000, seed: int = 1, threads: int = 0) -> MeshSegmentation:
     """
     Cuts the surface of a mechanical part into the simple bodies that it is composed of (P1, section 5.1): by shape diameter
     (Gaussian mixture, minimum cuts) and where the surface bends inwards; pieces whose hull is no more than the two are joined
@@ -6729,7 +6729,7 @@ def self_distance_objective(checker: CollisionChecker, margin: float = 0.05, wei
     """
     Weight times the sum of (1 - distance / margin)^2 over pairs of the robot's own links nearer than `margin` [m].
     """
-def shape_diameters(mesh: Mesh, *, progress: typing.Any | None = None, rays: int = 30, cone: float = 2.0943951023931953, outlier: float = 1.0, ray_lengths: bool = False, threads: int = 0) -> numpy.typing.NDArray[numpy.float64]:
+def shape_diameters(mesh: Mesh, *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, rays: int = 30, cone: float = 2.0943951023931953, outlier: float = 1.0, ray_lengths: bool = False, threads: int = 0) -> numpy.typing.NDArray[numpy.float64]:
     """
     Local thickness of a mesh at the middle of each face (m,) [m]; 0 where no ray leaves it. The mean over `rays` in a
     cone around the inward normal, weighted by the cosine of their angle to it, of the distance between the two ends along

@@ -19,6 +19,7 @@ DONE, NO_PLAN, INTERRUPTED = 0, 3, 130
 
 
 def run_grippers(arguments: argparse.Namespace, console: Console) -> int:
+    """The command; returns its exit code."""
     folder = OutputFolder(arguments.out, GRIPPER_FILES, GRIPPER_FOLDERS)
     with Reporter(console) as report:
         report("reading", 0.0)

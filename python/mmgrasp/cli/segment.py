@@ -27,6 +27,7 @@ _UNKNOWN_SHARE = 0.2
 
 
 def run_segment(arguments: argparse.Namespace, console: Console) -> int:
+    """The command; returns its exit code."""
     folder = None if arguments.out is None else OutputFolder(arguments.out, FILES)
     with Reporter(console) as report:
         report("reading", 0.0)
@@ -71,6 +72,7 @@ def segments_to_dict(
     found: _core.MeshSegmentation,
     primitives: list[_core.FittedPrimitive],
 ) -> dict[str, Any]:
+    """What segments.json holds: SI units."""
     notes = []
     if not mesh.closed:
         notes.append("the mesh is open: walls around its gaps may be joined wrongly")

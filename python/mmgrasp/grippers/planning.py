@@ -68,6 +68,7 @@ class GripperPlan:
 
     @property
     def outcome(self) -> Outcome:
+        """infeasible: an operation without any grasp; not_found: a rehearsal met something; else the least set's."""
         if self.missing or self.result is None:
             return Outcome.infeasible
         if any(self.rehearsed.values()):
@@ -76,6 +77,7 @@ class GripperPlan:
 
     @property
     def solved(self) -> bool:
+        """Every operation has a gripper that was rehearsed."""
         return (
             self.result is not None
             and not self.missing

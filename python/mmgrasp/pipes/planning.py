@@ -64,10 +64,12 @@ class PipePlan:
 
     @property
     def grasp(self) -> Grasp | None:
+        """The best grasp, or None."""
         return self.optimum.grasp
 
     @property
     def outcome(self) -> Outcome:
+        """Of the search, or why there is no motion."""
         return self.optimum.outcome
 
     @property

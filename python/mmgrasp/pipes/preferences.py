@@ -67,6 +67,7 @@ class Limits:
 
 
 def read_limits(root: Node) -> Limits:
+    """The problem's `limits`: sag [m] and stress [Pa]."""
     if "limits" not in root:
         return Limits()
     node = root["limits"].mapping("", "sag stress")

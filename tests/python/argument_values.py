@@ -96,7 +96,7 @@ VALUES: dict[str, Any] = {
     "size": np.array([0.1, 0.2, 0.3]),
     "labels": np.zeros(12),
     "Mesh.from_arrays.vertices": np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]),
-    "Mesh.from_arrays.triangles": np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]),
+    "Mesh.from_arrays.triangles": np.array([[0.0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]),
     "AssemblyOperation.motion": np.array([POSE, POSE]),
     "points": np.array([[1.0, 2, 3], [4, 5, 6]]),
     "centres": np.array([[1.0, 2, 3], [4, 5, 6]]),

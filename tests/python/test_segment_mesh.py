@@ -101,7 +101,7 @@ def test_pegs(name: str) -> None:
 
 def test_bad_input() -> None:
     mesh = mg.LinkShape(mg.Box([0.01, 0.02, 0.03])).surface()
-    with pytest.raises(mg.InvalidInput, match=r"labels = .*one a face"):
+    with pytest.raises(mg.InvalidInput, match=r"labels has shape .*one a face"):
         mg.grasping.fit_primitives(mesh, [0])
     with pytest.raises(mg.InvalidInput, match="whole number"):
         mg.grasping.fit_primitives(mesh, np.full(12, 0.5))

@@ -139,7 +139,7 @@ void run_kdl(const Case& c) {
     const int code = solver.CartToJnt(seed, target, q);
     const double time = 1e6 * (bench::now() - start);
     for (Eigen::Index j = 0; j < q.data.size(); ++j) q.data[j] = std::remainder(q.data[j], 2 * M_PI);
-    score.add(time, code < 0 ? Eigen::VectorXd() : q.data, c, static_cast<std::size_t>(i), judge);
+    score.add(time, code < 0 ? Eigen::VectorXd() : q.data, c, i, judge);
   }
   report(c, "KDL LMA", score, "",
          "eps 1e-5, rotation weighted 0.1, 500 iterations; knows no limits, angles wrapped after");

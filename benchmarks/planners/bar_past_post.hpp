@@ -49,7 +49,7 @@ inline mmgrasp::ManipulationProblem bar_past_post(const mmgrasp::JointGroup& gro
       if (kind == "499 out of reach") problem.grasps.back().T_object_hand.translation().x() += rng.uniform(0.6, 1.5);
     }
   }
-  problem.grasps[rng.index(static_cast<std::size_t>(grasps))] = bar_grasp(0.02, 0.1);
+  problem.grasps[rng.index(grasps)] = bar_grasp(0.02, 0.1);
   return problem;
 }
 

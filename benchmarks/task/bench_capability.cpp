@@ -76,13 +76,13 @@ void judge(const Case& c, const CapabilityMap& map, int poses, int threads) {
   std::vector<CollisionChecker> checkers;
   for (int i = 0; i < resolve_threads(threads); ++i) checkers.push_back(checker.clone());
   const Eigen::VectorXd middle = 0.5 * (c.arm.sample_lower() + c.arm.sample_upper());
-  std::vector<char> solved(static_cast<std::size_t>(poses)), reached(solved.size());
+  std::vector<char> solved(poses), reached(solved.size());
   std::vector<double> times(solved.size());
   const double start = bench::now();
   parallel_for(solved.size(), threads, [&](std::size_t i, int worker) {
     Rng rng(7, i);
-    const auto voxel = static_cast<std::int64_t>(rng.index(static_cast<std::size_t>(map.voxel_count())));
-    const int pose = static_cast<int>(rng.index(static_cast<std::size_t>(c.options.poses)));
+    const auto voxel = static_cast<std::int64_t>(rng.index(map.voxel_count()));
+    const int pose = static_cast<int>(rng.index(c.options.poses));
     const Pose target = c.arm.T_world_root() * map.tool_pose(voxel, pose);
     IkOptions own = ik;
     own.seed = static_cast<unsigned>(i + 1);

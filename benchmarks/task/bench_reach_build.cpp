@@ -49,8 +49,7 @@ void run(const bench::ReachCase& robot, std::int64_t samples, const fs::path& fo
   Rng rng(7);
   Poses poses;
   for (int i = 0; i < 20000; ++i)
-    poses.push_back(
-        database.tool_pose(static_cast<std::int64_t>(rng.index(static_cast<std::size_t>(database.size())))));
+    poses.push_back(database.tool_pose(static_cast<std::int64_t>(rng.index(database.size()))));
   std::int64_t found = 0;
   // Processor time of the quickest of some rounds: warm, and not disturbed by others on the machine.
   const auto per_pose = [&](const auto& ask) {

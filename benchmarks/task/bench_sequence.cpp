@@ -59,7 +59,7 @@ void run(const mmgrasp::test::Layout& layout) {
       least = std::min(least, stop.radius);
       sum += stop.radius;
     }
-    std::snprintf(more + written, sizeof more - static_cast<std::size_t>(written),
+    std::snprintf(more + written, sizeof more - written,
                   ", \"with_ties_s\": %.3f, \"least_radius\": %.4f, \"mean_radius\": %.4f", bench::now() - solved,
                   least, sum / static_cast<double>(stops.stops.size()));
   }

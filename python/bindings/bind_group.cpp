@@ -58,8 +58,7 @@ py::array_t<double> fk_batch_of_rows(const JointGroup& g, const ArrayLike& Q) {
   Poses poses;
   in_pieces(rows.shape(0), [&](Eigen::Index first, Eigen::Index count) {
     fk_batch(g, columns_of(rows, first, count), poses);
-    for (Eigen::Index i = 0; i < count; ++i)
-      Eigen::Map<RowMajor>(to + 16 * (first + i)) = poses[static_cast<std::size_t>(i)].matrix();
+    for (Eigen::Index i = 0; i < count; ++i) Eigen::Map<RowMajor>(to + 16 * (first + i)) = poses[i].matrix();
   });
   return out;
 }

@@ -210,7 +210,7 @@ void bind_sdf(py::module_& m) {
           [](const ProbabilisticSdf& sdf, const ArrayLike& points, int threads) {
             const auto rows = batch_argument(points, "points", 3);
             SdfValues values{Eigen::VectorXd(rows.shape(0)), Eigen::VectorXd(rows.shape(0)),
-                             std::vector<std::uint8_t>(static_cast<std::size_t>(rows.shape(0)))};
+                             std::vector<std::uint8_t>(rows.shape(0))};
             in_pieces(rows.shape(0), [&](Eigen::Index first, Eigen::Index count) {
               const SdfValues piece = sdf.query(columns_of(rows, first, count), threads);
               values.mean.segment(first, count) = piece.mean;

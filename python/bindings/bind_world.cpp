@@ -39,7 +39,7 @@ Voxels voxels_of_points(const Eigen::MatrixXd& points, double resolution) {
     throw InvalidInput("resolution = " + std::to_string(resolution) + ": is too fine for points " +
                        std::to_string(largest) + " m away");
   }
-  std::vector<std::array<std::int64_t, 3>> cells(static_cast<std::size_t>(points.rows()));
+  std::vector<std::array<std::int64_t, 3>> cells(points.rows());
   for (Eigen::Index i = 0; i < points.rows(); ++i) {
     auto& cell = cells[i];
     for (int k = 0; k < 3; ++k) cell[k] = static_cast<std::int64_t>(std::floor(points(i, k) / resolution));

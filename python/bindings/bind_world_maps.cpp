@@ -101,8 +101,8 @@ void bind_occupancy(py::module_& m) {
             const std::vector<Occupancy> states = map.states(columns);
             py::array_t<bool> occupied(columns.cols()), known(columns.cols());
             for (Eigen::Index i = 0; i < columns.cols(); ++i) {
-              occupied.mutable_data()[i] = states[static_cast<std::size_t>(i)] == Occupancy::occupied;
-              known.mutable_data()[i] = states[static_cast<std::size_t>(i)] != Occupancy::unknown;
+              occupied.mutable_data()[i] = states[i] == Occupancy::occupied;
+              known.mutable_data()[i] = states[i] != Occupancy::unknown;
             }
             return std::make_tuple(FlagArray(occupied), FlagArray(known));
           },

@@ -24,7 +24,7 @@ inline std::vector<Eigen::Vector3d> points_argument(const py::object& value, con
   const auto array = measured_argument<double>(value, name);
   const bool rows = (array.ndim() == 2 || array.ndim() == 3) && array.shape(array.ndim() - 1) == 3;
   if (!rows) throw InvalidInput(name + ": must have the shape (n, 3) or (rows, columns, 3)");
-  std::vector<Eigen::Vector3d> points(static_cast<std::size_t>(array.size() / 3));
+  std::vector<Eigen::Vector3d> points(array.size() / 3);
   if (!points.empty()) std::copy(array.data(), array.data() + array.size(), points[0].data());
   return points;
 }

@@ -17,8 +17,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     fuzzing::expect_names(refusal, "fuzz.pcd");
     return 0;
   }
-  expect(static_cast<std::size_t>(cloud.width) * static_cast<std::size_t>(cloud.height) == cloud.points.size(),
-         "width * height points");
+  expect(static_cast<std::size_t>(cloud.width) * cloud.height == cloud.points.size(), "width * height points");
   expect(cloud.labels.empty() || cloud.labels.size() == cloud.points.size(), "one label a point");
   for (const Eigen::Vector3d& p : cloud.points)
     expect(p.allFinite() || (std::isnan(p.x()) && std::isnan(p.y()) && std::isnan(p.z())), "finite or not measured");

@@ -9,7 +9,7 @@ namespace mmgrasp {
 
 void DepthImage::check() const {
   camera.check();
-  const std::size_t pixels = static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
+  const std::size_t pixels = static_cast<std::size_t>(camera.width) * camera.height;
   require(depth.size() == pixels, "depth image", std::to_string(depth.size()) + " pixels",
           "must have the camera's " + std::to_string(pixels));
 }

@@ -106,7 +106,7 @@ void HeightMap::check() const {
   checked_pose(T_world_map.matrix(), "T_world_map");
   require(std::isfinite(resolution) && resolution > 0, "map.resolution", resolution, "must be positive and finite [m]");
   require(nx > 0 && ny > 0, "map", std::to_string(nx) + " x " + std::to_string(ny) + " cells", "must have cells");
-  const std::size_t cells = static_cast<std::size_t>(nx) * static_cast<std::size_t>(ny);
+  const std::size_t cells = static_cast<std::size_t>(nx) * ny;
   require(height.size() == cells, "map.height", std::to_string(height.size()), "must be one a cell");
   require(upper.size() == cells, "map.upper", std::to_string(upper.size()), "must be one a cell");
   require(std::isfinite(pixel) && pixel >= 0, "map.pixel", pixel, "must be zero or positive [m]");

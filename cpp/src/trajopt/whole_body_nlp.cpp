@@ -339,7 +339,7 @@ void WholeBodyNlp::hessian(const VectorXd& x, double factor, const VectorXd& mul
 
 std::string WholeBodyNlp::constraint_name(int index) const {
   const auto after = std::upper_bound(row_at_.begin(), row_at_.end(), index);
-  const std::size_t t = static_cast<std::size_t>(after - row_at_.begin()) - 1;
+  const std::size_t t = after - row_at_.begin() - 1;
   return terms_[t]->kind + " of " + terms_[t]->what + " at waypoint " + std::to_string(terms_[t]->waypoint);
 }
 

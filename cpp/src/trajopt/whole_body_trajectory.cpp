@@ -44,7 +44,7 @@ WholeBodyTrajectory::WholeBodyTrajectory(const JointGroup& group, std::vector<do
 
 std::size_t WholeBodyTrajectory::interval(double time) const {
   const auto after = std::upper_bound(times_.begin() + 1, times_.end() - 1, time);
-  return static_cast<std::size_t>(after - times_.begin()) - 1;
+  return after - times_.begin() - 1;
 }
 
 VectorXd WholeBodyTrajectory::drive_at(double time) const {

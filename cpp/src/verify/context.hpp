@@ -28,7 +28,7 @@ struct Context {
   std::vector<int> pick_part;             ///< Part of each pick; -1: unknown name.
   std::vector<int> picked_by;             ///< First good pick of each part; -1: never picked.
 
-  std::size_t body_of_part(int part) const { return stage->first_part + static_cast<std::size_t>(part); }
+  std::size_t body_of_part(int part) const { return stage->first_part + part; }
   double pregrasp_opening(double width) const;
   std::string pick_name(std::size_t pick) const;
   /// Judge with exactly the parts in the scene that are left before this pick.

@@ -19,7 +19,7 @@ bool Floor::inside(int region, int layer, int ix, int iy) const {
 }
 
 bool Floor::any(int region, int layer) const {
-  const std::size_t size = static_cast<std::size_t>(grid_.nx) * static_cast<std::size_t>(grid_.ny);
+  const std::size_t size = static_cast<std::size_t>(grid_.nx) * grid_.ny;
   const auto first = regions_[region]->cells.begin() + static_cast<std::ptrdiff_t>(layer * size);
   return std::any_of(first, first + static_cast<std::ptrdiff_t>(size), [](std::uint8_t cell) { return cell != 0; });
 }

@@ -28,8 +28,7 @@ bool check_grid(const PlanToCheck& plan, Faults& faults) {
 
 /// Regions whose arrays fit the grid, in the plan's order.
 std::vector<const CheckedRegion*> usable_regions(const PlanToCheck& plan, Faults& faults) {
-  const std::size_t cells =
-      plan.grid.headings.size() * static_cast<std::size_t>(plan.grid.nx) * static_cast<std::size_t>(plan.grid.ny);
+  const std::size_t cells = plan.grid.headings.size() * static_cast<std::size_t>(plan.grid.nx) * plan.grid.ny;
   std::vector<const CheckedRegion*> usable;
   std::set<std::string> names;
   for (const CheckedRegion& region : plan.regions) {

@@ -86,8 +86,7 @@ class RegionCheck {
 
   void region(const CheckedRegion& region) {
     const std::vector<int> parts = wanted_parts(plan_, {region.tray});
-    const std::size_t size =
-        plan_.grid.headings.size() * static_cast<std::size_t>(plan_.grid.nx) * static_cast<std::size_t>(plan_.grid.ny);
+    const std::size_t size = plan_.grid.headings.size() * static_cast<std::size_t>(plan_.grid.nx) * plan_.grid.ny;
     if (parts.empty() || region.cells.size() != size) return;  // the latter is said at the stops
     const RegionCells cells(plan_, region);
     const std::string where = "region of tray '" + region.tray + "'";

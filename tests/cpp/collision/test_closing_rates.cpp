@@ -53,7 +53,7 @@ int expect_bounded(const JointGroup& group, int draws) {
   for (int i = 0; i < draws; ++i) {
     const Eigen::VectorXd q = rng.uniform(group.sample_lower(), group.sample_upper());
     Eigen::VectorXd step = Eigen::VectorXd::Zero(q.size());
-    if (i % 2 == 0) step[static_cast<Eigen::Index>(rng.index(static_cast<std::size_t>(q.size())))] = 0.02;
+    if (i % 2 == 0) step[static_cast<Eigen::Index>(rng.index(q.size()))] = 0.02;
     if (i % 2 == 1) step = 0.02 * rng.uniform(-Eigen::VectorXd::Ones(q.size()), Eigen::VectorXd::Ones(q.size()));
     const Eigen::VectorXd next = (q + step).cwiseMax(group.lower()).cwiseMin(group.upper());
     for (std::size_t p = 0; p < plan.varying.size(); ++p) {

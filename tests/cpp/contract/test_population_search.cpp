@@ -70,7 +70,7 @@ TEST_P(Population, StaysInsideBoundsAndBudget) {
     const PopulationResult r = search_->solve(problem, options);
     EXPECT_EQ(calls, budget);
     EXPECT_EQ(r.evaluations, budget);
-    EXPECT_EQ(r.history.size(), static_cast<std::size_t>(budget));
+    EXPECT_EQ(r.history.size(), budget);
     EXPECT_TRUE(std::is_sorted(r.history.rbegin(), r.history.rend()));
   }
 }

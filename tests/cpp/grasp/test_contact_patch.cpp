@@ -30,12 +30,12 @@ SdfHits hits_on(const PadRays& rays, const std::function<double(double, double)>
   hits.point.setConstant(3, n, kNaN);
   hits.normal.setConstant(3, n, kNaN);
   hits.sigma.setConstant(n, kNaN);
-  hits.hit.assign(static_cast<std::size_t>(n), 0);
+  hits.hit.assign(n, 0);
   for (Eigen::Index i = 0; i < n; ++i) {
     const Vector3d from = rays.origins.col(i);
     const double z = height(from.x(), from.y());
     if (std::isnan(z)) continue;
-    hits.hit[static_cast<std::size_t>(i)] = 1;
+    hits.hit[i] = 1;
     hits.distance[i] = z - from.z();
     hits.point.col(i) = Vector3d(from.x(), from.y(), z);
     hits.sigma[i] = sigma;

@@ -32,7 +32,7 @@ Setting box_between(double offset, double sigma) {
     const PadRays& rays = out.rays.back();
     const Eigen::Index n = rays.origins.cols();
     SdfHits hits;
-    hits.hit.assign(static_cast<std::size_t>(n), 1);
+    hits.hit.assign(n, 1);
     hits.distance.setConstant(n, offset);
     hits.point = rays.origins + offset * rays.directions;
     hits.normal = -rays.directions;

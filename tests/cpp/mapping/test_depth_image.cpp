@@ -49,7 +49,7 @@ TEST(DepthImage, PlaneInClosedForm) {
       seen += in_range;
     }
   }
-  EXPECT_EQ(image.points().size(), static_cast<std::size_t>(seen));
+  EXPECT_EQ(image.points().size(), seen);
   for (const Vector3d& p : image.points()) EXPECT_NEAR(n.dot(p), -1.5, 1e-6);
 }
 

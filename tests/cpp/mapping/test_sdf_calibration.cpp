@@ -71,7 +71,7 @@ class Bench {
       ProbabilisticSdf sdf(options);
       for (int k = 0; k < frames; ++k) {
         // Spread over all views, others in every trial.
-        const std::size_t view = (static_cast<std::size_t>(trial) + k * frames_.size() / frames) % frames_.size();
+        const std::size_t view = (trial + k * frames_.size() / frames) % frames_.size();
         const DepthCamera& camera = cameras_[view % 2];
         DepthImage image = frames_[view];
         disturb(image, camera, rng);

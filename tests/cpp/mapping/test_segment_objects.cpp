@@ -224,7 +224,7 @@ TEST(SegmentObjects, NothingThereIsNoError) {
     Matrix3Xd points = Matrix3Xd::Random(3, n);
     const ObjectSegmentation found = segment_objects(points);
     EXPECT_TRUE(found.objects.empty());
-    EXPECT_EQ(found.labels.size(), static_cast<std::size_t>(n));
+    EXPECT_EQ(found.labels.size(), n);
   }
   const ObjectSegmentation same = segment_objects(Matrix3Xd::Constant(3, 500, 0.25));
   EXPECT_TRUE(same.objects.empty());

@@ -24,7 +24,7 @@ TEST(Assignment, EqualsEveryPermutation) {
     const int n = static_cast<int>(rng.index(8));
     Eigen::MatrixXd costs(n, n);
     for (double& c : costs.reshaped()) c = repeat % 2 ? rng.uniform(-5, 5) : static_cast<double>(rng.index(4));
-    std::vector<int> columns(static_cast<std::size_t>(n));
+    std::vector<int> columns(n);
     std::iota(columns.begin(), columns.end(), 0);
     double best = std::numeric_limits<double>::infinity();
     do {

@@ -95,7 +95,7 @@ TEST(SetCover, EqualsBruteForceOnRandomInstances) {
 /// best cover's cost. Two or three components, so that they are told apart.
 double by_branching(const SetCoverProblem& problem) {
   double best = std::numeric_limits<double>::infinity();
-  std::vector<int> times(static_cast<std::size_t>(problem.elements), 0);
+  std::vector<int> times(problem.elements, 0);
   const std::function<void(double)> descend = [&](double cost) {
     if (cost >= best) return;
     const auto open = std::find(times.begin(), times.end(), 0);

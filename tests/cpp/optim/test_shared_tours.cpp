@@ -70,7 +70,7 @@ double brute_force(const Case& c) {
 
 void expect_shared(const Case& c, const SharedTours& shared) {
   std::vector<int> served(c.stop.size(), 0);
-  ASSERT_EQ(shared.orders.size(), static_cast<std::size_t>(c.robots));
+  ASSERT_EQ(shared.orders.size(), c.robots);
   double longest = 0;
   for (int robot = 0; robot < c.robots; ++robot) {
     const auto& order = shared.orders[robot];

@@ -115,9 +115,7 @@ TEST(Tour, ManyStopsAvoidBlockedWays) {
 double optimum_by_table(const Eigen::MatrixXd& lengths) {
   const int n = static_cast<int>(lengths.rows()) - 2;
   std::vector<float> best((std::size_t{1} << n) * static_cast<std::size_t>(n), std::numeric_limits<float>::infinity());
-  const auto at = [&](std::size_t mask, int last) -> float& {
-    return best[mask * static_cast<std::size_t>(n) + static_cast<std::size_t>(last)];
-  };
+  const auto at = [&](std::size_t mask, int last) -> float& { return best[mask * static_cast<std::size_t>(n) + last]; };
   for (int j = 0; j < n; ++j) at(std::size_t{1} << j, j) = static_cast<float>(lengths(n, j));
   for (std::size_t mask = 1; mask < std::size_t{1} << n; ++mask) {
     for (int last = 0; last < n; ++last) {

@@ -30,7 +30,7 @@ void expect_lines(const JointGroup& group, const CartesianResult& result, const 
   EXPECT_EQ(result.fraction, 1);
   for (std::size_t line = 0; line + 1 < poses.size(); ++line) {
     for (int i = result.corners[line]; i < result.corners[line + 1]; ++i) {
-      const VectorXd &a = result.path->waypoints[i], &b = result.path->waypoints[static_cast<std::size_t>(i) + 1];
+      const VectorXd &a = result.path->waypoints[i], &b = result.path->waypoints[i + 1];
       EXPECT_LE((b - a).cwiseAbs().maxCoeff(), jump_threshold);
       for (int k = 0; k <= 5; ++k) {
         const Pose tool = group.fk(a + k / 5.0 * (b - a));

@@ -111,10 +111,10 @@ TEST_F(OneVertex, IsClosedToAllGraspsByTheRobotItself) {
   CollisionChecker alone(problem_.group, problem_.world);
   ASSERT_EQ(alone.rejection(Eigen::Vector3d::Zero()), Rejection::scene);
   for (const int count : {1, 20}) {
-    problem_.grasps.assign(static_cast<std::size_t>(count), gate.passing);
+    problem_.grasps.assign(count, gate.passing);
     const ManipulationResult result = plan_manipulation(problem_, options, &roadmap);
     EXPECT_EQ(result.outcome, Outcome::not_found);
-    EXPECT_EQ(result.stats.grasps_searched, static_cast<std::size_t>(count));
+    EXPECT_EQ(result.stats.grasps_searched, count);
     EXPECT_EQ(result.stats.edges_checked_robot + result.stats.edges_checked_attached, 0u);
   }
 }

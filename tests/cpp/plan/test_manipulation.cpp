@@ -273,7 +273,7 @@ TEST(ManipulationStages, SayWhatTheyFoundAndWhen) {
     std::size_t counted = 0;
     for (const StageReport& report : result.stats.stages) {
       stages.push_back(report.stage);
-      counted += static_cast<std::size_t>(report.improvements);
+      counted += report.improvements;
       const auto own = [&](const Improvement& better) { return better.stage == report.stage; };
       const auto first = std::find_if(result.improvements.begin(), result.improvements.end(), own);
       const auto last = std::find_if(result.improvements.rbegin(), result.improvements.rend(), own);

@@ -54,7 +54,7 @@ TEST(RrtStarMg, MovesTheObjectOnFreePaths) {
     });
     expect_sound(problem, result);
     EXPECT_EQ(result.cost, last);
-    EXPECT_EQ(result.improvements.size(), static_cast<std::size_t>(reported));
+    EXPECT_EQ(result.improvements.size(), reported);
     EXPECT_LE(result.stats.samples, 500u);
   }
 }

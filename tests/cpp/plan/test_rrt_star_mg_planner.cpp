@@ -90,7 +90,7 @@ class GridSearch {
     }
     for (int a = low[0]; a <= high[0]; ++a)
       for (int b = low[1]; b <= high[1]; ++b)
-        for (int c = low[2]; c <= high[2]; ++c) visit(static_cast<std::size_t>((a * kSide + b) * kSide + c));
+        for (int c = low[2]; c <= high[2]; ++c) visit((a * kSide + b) * kSide + c);
   }
 
   /// Corners are cut at random as long as that is free.

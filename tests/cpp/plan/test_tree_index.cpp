@@ -63,7 +63,7 @@ TEST(TreeIndex, AnswersAsAScanOfAllPointsDoes) {
       });
       EXPECT_EQ(found, expected);
     }
-    EXPECT_EQ(index.size(), static_cast<std::size_t>(std::count(there.begin(), there.end(), 1)));
+    EXPECT_EQ(index.size(), std::count(there.begin(), there.end(), 1));
   }
 }
 

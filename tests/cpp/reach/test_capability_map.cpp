@@ -221,7 +221,7 @@ TEST(CapabilityMap, FewPosesAreClassedOtherwiseThanByManyRestarts) {
   Rng rng(3);
   int missed = 0, tried = 0;
   for (int i = 0; i < 1500; ++i) {
-    const auto voxel = static_cast<std::int64_t>(rng.index(static_cast<std::size_t>(map.voxel_count())));
+    const auto voxel = static_cast<std::int64_t>(rng.index(map.voxel_count()));
     const int pose = static_cast<int>(rng.index(24));
     const bool solved =
         solve_collision_free_ik(checker, map.tool_pose(voxel, pose), Eigen::VectorXd::Zero(7), ik).outcome ==

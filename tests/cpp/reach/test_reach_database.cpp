@@ -32,7 +32,7 @@ TEST(ReachDatabase, StoredConfigurationsLieInTheCellOfTheirToolPose) {
   ASSERT_GT(database.size(), 10000);
   Rng rng(5);
   for (int i = 0; i < 500; ++i) {
-    const auto index = static_cast<std::int64_t>(rng.index(static_cast<std::size_t>(database.size())));
+    const auto index = static_cast<std::int64_t>(rng.index(database.size()));
     const Eigen::VectorXd q = database.configuration(index);
     EXPECT_TRUE(arm.within_limits(q));
     EXPECT_TRUE(holds_column(database.cell(arm.fk(q)), q));

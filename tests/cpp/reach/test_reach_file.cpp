@@ -168,8 +168,7 @@ TEST_F(ReachFile, RefusesForeignFilesAndEditedOnes) {
 
   // Tables that contradict each other, with every checksum right, never lead outside of the arrays.
   const auto number_at = [](std::string& bytes, std::size_t index, std::uint32_t value) {
-    for (int i = 0; i < 4; ++i)
-      bytes[192 + 4 * index + static_cast<std::size_t>(i)] = static_cast<char>(value >> 8 * i);
+    for (int i = 0; i < 4; ++i) bytes[192 + 4 * index + i] = static_cast<char>(value >> 8 * i);
   };
   for (const char* name : {"cell_first.npy", "position_first.npy", "rotation_ids.npy", "positions.npy"}) {
     for (const std::uint32_t value : {0xffffffffu, 0x7fffffffu}) {

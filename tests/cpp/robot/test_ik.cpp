@@ -159,7 +159,7 @@ TEST(Ik, FilterDecidesAndIsCounted) {
   const IkResult result = solve_ik(group, group.fk(q), q, {}, valid);
   ASSERT_EQ(result.outcome, Outcome::solved);
   EXPECT_LT(result.q[2], 0);
-  EXPECT_EQ(result.rejections.scene, static_cast<std::size_t>(calls - 1));
+  EXPECT_EQ(result.rejections.scene, calls - 1);
   EXPECT_GE(calls, 2);
 }
 

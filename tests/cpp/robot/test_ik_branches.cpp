@@ -82,7 +82,7 @@ void expect_complete(const JointGroup& group, int poses, int descents, std::size
       EXPECT_TRUE(holds(branches.solutions, q, 1e-4)) << "pose " << i << ", " << q.transpose();
     }
   }
-  EXPECT_GT(total, static_cast<std::size_t>(2 * poses));
+  EXPECT_GT(total, 2 * poses);
 }
 
 std::string six_joint_urdf(const std::vector<std::pair<std::string, std::string>>& xyz_axis,

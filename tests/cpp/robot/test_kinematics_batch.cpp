@@ -40,7 +40,7 @@ TEST(KinematicsBatch, MatchesKdlOnEveryInstructionSet) {
         Pose expected_T;
         Matrix6Xd expected_J;
         ASSERT_NO_FATAL_FAILURE(kdl_kinematics(group, Q.col(i), Eigen::Vector3d::Zero(), expected_T, expected_J));
-        const std::size_t at = static_cast<std::size_t>(i);
+        const std::size_t at = i;
         EXPECT_LT((T[at].matrix() - expected_T.matrix()).cwiseAbs().maxCoeff(), 1e-12);
         EXPECT_LT((tips[at].matrix() - expected_T.matrix()).cwiseAbs().maxCoeff(), 1e-12);
         EXPECT_LT((J.middleCols(i * group.size(), group.size()) - expected_J).cwiseAbs().maxCoeff(), 1e-12);
@@ -64,7 +64,7 @@ TEST(KinematicsBatch, BaseMimicStillColumnsAndAnyRootMatchTheSingleCall) {
         Poses T;
         Matrix6Xd J;
         fk_jacobian_batch(group, Q, T, J);
-        ASSERT_EQ(T.size(), static_cast<std::size_t>(count));
+        ASSERT_EQ(T.size(), count);
         for (int i = 0; i < count; ++i) {
           EXPECT_LT((T[i].matrix() - group.fk(Q.col(i)).matrix()).cwiseAbs().maxCoeff(), 1e-12);
           EXPECT_LT((J.middleCols(i * group.size(), group.size()) - group.jacobian(Q.col(i))).cwiseAbs().maxCoeff(),
@@ -84,7 +84,7 @@ TEST(KinematicsBatch, AnswersDoNotDependOnTheirPlaceNorOnTheMatrixTheyLieIn) {
   fk_batch(group, Q, all);
   fk_batch(group, wide.middleRows(2, 7), from_wide);
   for (int i = 0; i < 29; ++i) {
-    const std::size_t at = static_cast<std::size_t>(i);
+    const std::size_t at = i;
     fk_batch(group, Q.col(i), one);
     EXPECT_EQ((one[0].matrix() - all[at].matrix()).norm(), 0.0) << i;
     EXPECT_EQ((from_wide[at].matrix() - all[at].matrix()).norm(), 0.0) << i;

@@ -11,7 +11,7 @@ inline Eigen::VectorXd nearest_image(const std::vector<bool>& wraps, const Eigen
                                      const Eigen::VectorXd& to) {
   Eigen::VectorXd best = to;
   for (Eigen::Index i = 0; i < to.size(); ++i)
-    for (int k = -6; k <= 6 && wraps[static_cast<std::size_t>(i)]; ++k)
+    for (int k = -6; k <= 6 && wraps[i]; ++k)
       if (std::abs(to[i] + 2 * M_PI * k - from[i]) < std::abs(best[i] - from[i])) best[i] = to[i] + 2 * M_PI * k;
   return best;
 }

@@ -22,7 +22,7 @@ inline SetCoverProblem read_orlib(std::istream& in) {
     for (int k = 0; k < count; ++k) {
       int set = 0;
       in >> set;
-      problem.sets.at(static_cast<std::size_t>(set - 1)).push_back(e);
+      problem.sets.at(set - 1).push_back(e);
     }
   }
   return problem;

@@ -52,9 +52,7 @@ class ReachFolder : public ::testing::Test {
   void TearDown() override { fs::remove_all(folder_); }
 
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  std::size_t entry_count() const {
-    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator{}));
-  }
+  std::size_t entry_count() const { return std::distance(fs::directory_iterator(folder_), fs::directory_iterator{}); }
 
   static ReachOptions small(std::int64_t samples = 150000) {
     ReachOptions options;

@@ -44,7 +44,7 @@ inline Layout make_layout(const std::string& name, const std::vector<LaidTray>& 
   grid.ny = static_cast<int>(std::ceil((bounds.sizes().y() + 2 * shape.outer) / resolution)) + 2;
   grid.headings.clear();
   for (int h = 0; h < shape.headings; ++h) grid.headings.push_back(2 * M_PI * h / shape.headings);
-  CellMask blocked(static_cast<std::size_t>(grid.nx) * static_cast<std::size_t>(grid.ny), 0);
+  CellMask blocked(static_cast<std::size_t>(grid.nx) * grid.ny, 0);
   const auto near_cells = [&](const LaidTray& tray, double reach, const auto& visit) {
     const Eigen::Vector2d low = (tray.at - grid.origin).array() / resolution - reach / resolution - 1;
     const int span = static_cast<int>(2 * reach / resolution) + 3;

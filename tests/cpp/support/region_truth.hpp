@@ -102,8 +102,8 @@ inline TruthCounts compare_with_truth(const PartSupplyProblem& problem, const Re
   const Tray& where = problem.trays[tray];
   const BaseRegion& region = regions[tray];
   while (counts.compared < samples) {
-    const int ix = static_cast<int>(rng.index(static_cast<std::size_t>(grid.nx)));
-    const int iy = static_cast<int>(rng.index(static_cast<std::size_t>(grid.ny)));
+    const int ix = static_cast<int>(rng.index(grid.nx));
+    const int iy = static_cast<int>(rng.index(grid.ny));
     const Eigen::Vector3d centre = grid.centre(0, ix, iy);
     if ((centre.head<2>() - where.T_world_tray.translation().head<2>()).norm() > radius) continue;
     const std::size_t part = rng.index(where.parts.size());

@@ -51,7 +51,7 @@ TEST_F(BaseRegions, CountersEqualABruteForceRecount) {
           centres[grid_->index(0, ix, iy)] = look(pose);
         }
       }
-      std::vector<std::uint8_t> corners(static_cast<std::size_t>((grid_->nx + 1) * (grid_->ny + 1)), 0);
+      std::vector<std::uint8_t> corners((grid_->nx + 1) * (grid_->ny + 1), 0);
       const auto centre_at = [&](int ix, int iy) {
         return ix >= 0 && iy >= 0 && ix < grid_->nx && iy < grid_->ny && centres[grid_->index(0, ix, iy)];
       };
@@ -101,8 +101,8 @@ TEST_F(BaseRegions, CellsAreFeasibleForAnotherIk) {
   const BaseRegion& region = (*regions_)[0];
   int looked_at = 0, solved = 0;
   for (int sample = 0; sample < 4000 && looked_at < 40; ++sample) {
-    const int ix = static_cast<int>(rng.index(static_cast<std::size_t>(grid_->nx)));
-    const int iy = static_cast<int>(rng.index(static_cast<std::size_t>(grid_->ny)));
+    const int ix = static_cast<int>(rng.index(grid_->nx));
+    const int iy = static_cast<int>(rng.index(grid_->ny));
     if (!region.cells[grid_->index(0, ix, iy)]) continue;
     ++looked_at;
     const Pose T_world_root = pose_from_planar(grid_->centre(0, ix, iy));

@@ -187,7 +187,7 @@ TEST(RobustIntersections, RadiusIsTheCirclesAndCellsAreShared) {
   const InscribedCircle circle = inscribed_circle(grid, both, 0);
   EXPECT_EQ(found.robust[2].radius, circle.radius);
   EXPECT_EQ(found.robust[2].centre, circle.centre);
-  EXPECT_EQ(found.robust[2].cells, static_cast<std::size_t>(std::count(both.begin(), both.end(), 1)));
+  EXPECT_EQ(found.robust[2].cells, std::count(both.begin(), both.end(), 1));
 }
 
 TEST(RobustIntersections, ARegionOfTheWrongSizeIsRefused) {
@@ -271,7 +271,7 @@ TEST(MinimalStops, TwoHundredRandomInstancesAgainstEnumeration) {
       for (int tray = 0; tray < trays; ++tray) {
         if (rng.uniform() < 0.4) place.trays.emplace_back(tray);
       }
-      if (place.trays.empty()) place.trays.emplace_back(static_cast<int>(rng.index(static_cast<std::size_t>(trays))));
+      if (place.trays.empty()) place.trays.emplace_back(static_cast<int>(rng.index(trays)));
       place.radius = rng.uniform(0.1, 1.0);
       places.push_back(place);
     }
@@ -300,7 +300,7 @@ TEST(MinimalStops, TwoHundredRandomInstancesAgainstEnumeration) {
     ASSERT_EQ(stops.outcome, Outcome::solved);
     EXPECT_EQ(static_cast<int>(stops.stops.size()), least) << "instance " << instance;
     EXPECT_EQ(stops.lower_bound, least);
-    std::vector<int> served(static_cast<std::size_t>(trays), 0);
+    std::vector<int> served(trays, 0);
     double radii = 0;
     for (const Stop& stop : stops.stops) {
       const Intersection& place = places[stop.intersection];

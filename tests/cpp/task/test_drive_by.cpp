@@ -100,7 +100,7 @@ TEST(DriveBy, HoldsTheToolStillWhileTheBaseDrivesOn) {
   tasks[0].dwell = 0.8;
   const DriveByResult r = plan_drive_by(group, World(), kStart, tasks, {kGoal, kGoal});
   expect_sound(r, tasks);
-  const std::size_t from = static_cast<std::size_t>(r.events[0].waypoint);
+  const std::size_t from = r.events[0].waypoint;
   std::size_t to = from;
   const auto& times = r.trajectory->times();
   while (to + 1 < times.size() && times[to] - times[from] < 0.8 - 1e-6) ++to;
@@ -216,7 +216,7 @@ TEST(DriveBy, CarriesThePartItTook) {
   held.attach("part", "gripper_link", T_grasp.inverse() * world.objects().at("part").T_world_object);
   CollisionChecker checker(group, held);
   const auto& t = *r.trajectory;
-  const double from = t.times()[static_cast<std::size_t>(r.events[0].waypoint)];
+  const double from = t.times()[r.events[0].waypoint];
   for (int i = 0; i <= 400; ++i)
     EXPECT_FALSE(checker.first_contact(t.at(from + (t.duration() - from) * i / 400)).has_value()) << i;
 }

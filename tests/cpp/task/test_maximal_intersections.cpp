@@ -112,7 +112,7 @@ TEST(MaximalIntersections, ARowOfFiveHundredTraysHasAProvenLeastSequence) {
   const Intersections found = maximal_intersections(grid, regions, 0.10);
   ASSERT_TRUE(found.complete);
   // Three neighbours share 1.0 - 0.8 = 0.2 m: exactly the disc.
-  EXPECT_EQ(found.robust.size(), static_cast<std::size_t>(trays - 2));
+  EXPECT_EQ(found.robust.size(), trays - 2);
   const StopSet stops = cover_from_intersections(grid, found, trays);
   EXPECT_EQ(stops.outcome, Outcome::solved);
   EXPECT_EQ(stops.stops.size(), 167u);  // ceil(500 / 3)

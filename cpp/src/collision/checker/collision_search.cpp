@@ -171,7 +171,7 @@ bool CollisionSearch::self_collides_for_certain(Placement& placement) {
   for (std::size_t block = 0; block < plan.blocks.size(); ++block) {
     const unsigned lanes = runs(kSphereStage) ? pair_masks_[block] : plan.blocks[block].lanes;
     for (unsigned mask = lanes; mask != 0; mask &= mask - 1) {
-      const int i = plan.pair_of[block * kLanes + static_cast<std::size_t>(__builtin_ctz(mask))];
+      const int i = plan.pair_of[block * kLanes + __builtin_ctz(mask)];
       if (table_parts(placement, plan.varying[i])) continue;
       const CoverAnswer answer = pair_by_covers(placement, plan.varying[i]);
       if (answer == kApart) continue;

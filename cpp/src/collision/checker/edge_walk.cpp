@@ -93,7 +93,7 @@ bool EdgeWalk::intervals_free() {
     if (rest.high - rest.low > 1) queue_.push_back(rest);
   }
   // What was proven counts as checked.
-  checks_ = static_cast<std::size_t>(pieces_ - 1);
+  checks_ = pieces_ - 1;
   return true;
 }
 

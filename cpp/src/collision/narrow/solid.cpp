@@ -195,7 +195,7 @@ struct CellKeyHash {
   std::size_t operator()(const CellKey& key) const {
     std::uint64_t sum = 0;
     for (const long each : key) sum = (sum ^ static_cast<std::uint64_t>(each)) * 0x9e3779b97f4a7c15ull;
-    return static_cast<std::size_t>(sum ^ (sum >> 32));
+    return sum ^ (sum >> 32);
   }
 };
 

@@ -11,7 +11,7 @@ void GridDistanceField::Grid::check() const {
   std::size_t points = 1;
   for (const int count : size) {
     require(count >= 2, "size", count, "must be at least 2 along each axis");
-    points *= static_cast<std::size_t>(count);
+    points *= count;
   }
   require(values.size() == points, "values", static_cast<double>(values.size()),
           "must be as many as the grid has points (" + std::to_string(points) + ")");
@@ -39,7 +39,7 @@ DistanceFieldProperties GridDistanceField::properties() const {
 void GridDistanceField::evaluate(const Eigen::Matrix3Xd& points, Eigen::VectorXd& distances,
                                  Eigen::Matrix3Xd* gradients) const {
   const Eigen::AlignedBox3d domain = properties().domain;
-  const std::size_t along_y = static_cast<std::size_t>(grid_.size[2]), along_x = along_y * grid_.size[1];
+  const std::size_t along_y = grid_.size[2], along_x = along_y * grid_.size[1];
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
     distances[i] = std::numeric_limits<double>::quiet_NaN();
     if (gradients) gradients->col(i).setZero();

@@ -178,7 +178,7 @@ class PcdReader {
       }
       field.offset = point_bytes_;
       field.column = columns_;
-      field.lane = static_cast<std::size_t>(point_bytes_) * static_cast<std::size_t>(points_);
+      field.lane = static_cast<std::size_t>(point_bytes_) * points_;
       point_bytes_ += field.size * field.count;
       columns_ += field.count;
     }
@@ -237,7 +237,7 @@ class PcdReader {
 
   void read_binary() {
     const std::string_view bytes = content_.substr(position_);
-    const long whole = static_cast<long>(bytes.size() / static_cast<std::size_t>(point_bytes_));
+    const long whole = static_cast<long>(bytes.size() / point_bytes_);
     if (whole < points_) truncated(whole);
     for (long i = 0; i < points_; ++i) {
       double value[4] = {};
@@ -258,7 +258,7 @@ class PcdReader {
       fail("announces " + std::to_string(sizes[0]) + " compressed bytes, holds " + std::to_string(packed.size()) +
            " (truncated)");
     }
-    const std::size_t wanted = static_cast<std::size_t>(point_bytes_) * static_cast<std::size_t>(points_);
+    const std::size_t wanted = static_cast<std::size_t>(point_bytes_) * points_;
     if (sizes[1] != wanted) {
       fail("announces " + std::to_string(sizes[1]) + " bytes once unpacked: must be " + std::to_string(wanted) +
            " for its points");
@@ -269,8 +269,7 @@ class PcdReader {
       double value[4] = {};
       for (int k = 0; k < 4; ++k) {
         if (wanted_[k] == nullptr) continue;
-        value[k] =
-            field_value(bytes.data() + wanted_[k]->lane + static_cast<std::size_t>(i * wanted_[k]->size), *wanted_[k]);
+        value[k] = field_value(bytes.data() + wanted_[k]->lane + i * wanted_[k]->size, *wanted_[k]);
       }
       add(value);
     }

@@ -27,8 +27,8 @@ std::string header_of(const PointCloud& cloud) {
 }  // namespace
 
 void write_pcd(const std::string& path, const PointCloud& cloud) {
-  require(static_cast<std::size_t>(cloud.width) * static_cast<std::size_t>(cloud.height) == cloud.points.size(),
-          "cloud.points", std::to_string(cloud.points.size()), "must be width * height many");
+  require(static_cast<std::size_t>(cloud.width) * cloud.height == cloud.points.size(), "cloud.points",
+          std::to_string(cloud.points.size()), "must be width * height many");
   require(cloud.labels.empty() || cloud.labels.size() == cloud.points.size(), "cloud.labels",
           std::to_string(cloud.labels.size()), "must be one a point, or none");
   const std::string temporary = path + ".part";

@@ -26,7 +26,7 @@ class ExpansionGraph {
     }
     std::vector<int> next(nodes + 2, 0);
     for (int v = 1; v < nodes + 2; ++v) next[v] = next[v - 1] + degree[v - 1];
-    const std::size_t arcs = static_cast<std::size_t>(next.back()) + degree.back();
+    const std::size_t arcs = next.back() + degree.back();
     std::vector<std::pair<int, int>> ends(arcs);
     reverse_.resize(arcs);
     const auto join = [&](int a, int b) {
@@ -113,7 +113,7 @@ double labelling_cost(const Eigen::MatrixXd& costs, const std::vector<LabelLink>
 }
 
 std::vector<int> alpha_expansion(const Eigen::MatrixXd& costs, const std::vector<LabelLink>& links) {
-  std::vector<int> labels(static_cast<std::size_t>(costs.cols()), 0);
+  std::vector<int> labels(costs.cols(), 0);
   for (Eigen::Index v = 0; v < costs.cols(); ++v) costs.col(v).minCoeff(&labels[v]);
   const int count = static_cast<int>(costs.rows());
   if (count < 2 || labels.empty()) return labels;

@@ -114,7 +114,7 @@ void list_segments(const TriangleMesh& mesh, MeshSegmentation& out) {
   std::vector<std::vector<std::pair<double, double>>> diameters;
   std::vector<double> thread_area;
   for (std::size_t f = 0; f < out.labels.size(); ++f) {
-    const std::size_t s = static_cast<std::size_t>(out.labels[f]);
+    const std::size_t s = out.labels[f];
     if (segments.size() <= s) {
       segments.resize(s + 1);
       diameters.resize(s + 1);

@@ -77,10 +77,10 @@ double bend_around(const FaceGraph& graph, int face, double reach, Walk& walk) {
 }  // namespace
 
 std::vector<double> inward_bends(const FaceGraph& graph, double reach, int threads) {
-  std::vector<double> out(static_cast<std::size_t>(graph.size()), 0);
+  std::vector<double> out(graph.size(), 0);
   const std::size_t batches = (out.size() + kBatch - 1) / kBatch;
   const NearCreases creases(graph, reach);
-  std::vector<Walk> walks(static_cast<std::size_t>(resolve_threads(threads)), Walk(graph));
+  std::vector<Walk> walks(resolve_threads(threads), Walk(graph));
   parallel_for(batches, threads, [&](std::size_t batch, int worker) {
     const std::size_t end = std::min(out.size(), (batch + 1) * kBatch);
     for (std::size_t f = batch * kBatch; f < end; ++f) {

@@ -62,7 +62,7 @@ Hand eigengrasp_hand(const Robot& robot, const std::string& tool_link, const std
   // Axes and openings are those of the pads, which do not depend on them.
   const auto model = make_hand_model(hand, robot);
   const auto line_at = [&](double share) {
-    return closing_line(model->pads(std::vector<double>(static_cast<std::size_t>(model->groups()), share)));
+    return closing_line(model->pads(std::vector<double>(model->groups(), share)));
   };
   const Vector3d axis = line_at(0.5).axis, across = axis - axis.dot(approach) * approach;
   require(across.norm() > 0.5, "approach", type.name, "the fingertips close along it, not across it");
@@ -75,7 +75,7 @@ Hand eigengrasp_hand(const Robot& robot, const std::string& tool_link, const std
   // A table where the fingers part all the way; where they first meet on it, what is beyond is closed too.
   if (std::adjacent_find(openings.begin(), openings.end(), [](double a, double b) { return a >= b; }) == openings.end())
     hand.openings = openings;
-  const std::vector<FingerPad> pads = model->pads(std::vector<double>(static_cast<std::size_t>(model->groups()), 0.5));
+  const std::vector<FingerPad> pads = model->pads(std::vector<double>(model->groups(), 0.5));
   hand.finger_depth = pads[0].depth;
   hand.finger_width = pads[0].width;
   hand.check();

@@ -63,8 +63,8 @@ int MaskImage::count() const {
 
 void MaskImage::check(const char* field) const {
   require(radius >= 0 && radius <= 10000, std::string(field) + ".radius", radius, "must be from 0 to 10000 cells");
-  require(cells.size() == static_cast<std::size_t>(width()) * static_cast<std::size_t>(width()), field,
-          std::to_string(cells.size()) + " cells", "must be (2 radius + 1) squared");
+  require(cells.size() == static_cast<std::size_t>(width()) * width(), field, std::to_string(cells.size()) + " cells",
+          "must be (2 radius + 1) squared");
   require(count() <= 65535, field, std::to_string(count()) + " ones", "must be at most 65535 (use coarser cells)");
 }
 
@@ -140,7 +140,7 @@ void convolve_row(const RowSums& image, const MaskRuns& mask, int y, std::uint16
 std::vector<std::uint16_t> convolve_mask(const std::vector<std::uint8_t>& image, int nx, int ny, const MaskImage& mask,
                                          bool outside) {
   mask.check("mask");
-  require(nx > 0 && ny > 0 && image.size() == static_cast<std::size_t>(nx) * static_cast<std::size_t>(ny), "image",
+  require(nx > 0 && ny > 0 && image.size() == static_cast<std::size_t>(nx) * ny, "image",
           std::to_string(image.size()) + " cells", "must be nx * ny of them");
   const detail::RowSums sums(image, nx, ny, mask.radius, outside);
   const detail::MaskRuns runs(mask);

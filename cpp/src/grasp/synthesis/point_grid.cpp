@@ -17,8 +17,7 @@ PointGrid::PointGrid(const std::vector<Eigen::Vector3d>& points, double side) : 
   for (int k = 0; k < 3; ++k) n_[k] = static_cast<int>(size[k] / side_) + 1;
   const auto cell_of = [&](const Eigen::Vector3d& p) {
     std::size_t at[3];
-    for (int k = 0; k < 3; ++k)
-      at[k] = static_cast<std::size_t>(std::clamp(static_cast<int>((p[k] - origin_[k]) / side_), 0, n_[k] - 1));
+    for (int k = 0; k < 3; ++k) at[k] = std::clamp(static_cast<int>((p[k] - origin_[k]) / side_), 0, n_[k] - 1);
     return (at[2] * n_[1] + at[1]) * n_[0] + at[0];
   };
   begin_.assign(static_cast<std::size_t>(n_[0]) * n_[1] * n_[2] + 1, 0);

@@ -46,7 +46,7 @@ class Search {
   GraspSynthesis run() {
     GraspSynthesis out;
     out.object = surface_.extent;
-    const std::size_t all = static_cast<std::size_t>(options_.samples), first = all - all / 3;
+    const std::size_t all = options_.samples, first = all - all / 3;
     bool finished = spread(first);
     std::vector<std::size_t> seeds = best_distinct();
     if (finished && seeds.empty()) {

@@ -83,7 +83,7 @@ class PlaneFitter {
 
   template <typename Row>
   void bands(const Row& row) const {
-    parallel_for(static_cast<std::size_t>((height_ + kBand - 1) / kBand), options_.threads, [&](std::size_t band, int) {
+    parallel_for((height_ + kBand - 1) / kBand, options_.threads, [&](std::size_t band, int) {
       const int first = static_cast<int>(band) * kBand;
       for (int v = first; v < std::min(first + kBand, height_); ++v) row(v);
     });

@@ -123,7 +123,7 @@ class FrameIntegration {
     const int columns = (image_.camera.width + stride - 1) / stride,
               rows = (image_.camera.height + stride - 1) / stride;
     std::vector<Eigen::AlignedBox3d> boxes(static_cast<std::size_t>(columns) * rows);
-    parallel_for(static_cast<std::size_t>(rows), grid_.options.threads, [&](std::size_t row, int) {
+    parallel_for(rows, grid_.options.threads, [&](std::size_t row, int) {
       for (int column = 0; column < columns; ++column) {
         boxes[row * columns + column] = tile_box(column * stride, static_cast<int>(row) * stride, stride);
       }

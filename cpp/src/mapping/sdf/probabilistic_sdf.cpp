@@ -29,7 +29,7 @@ void check_columns(const Eigen::Matrix3Xd& columns, const char* name) {
 /// Calls work(first, last) for pieces of [0, count).
 template <typename Work>
 void by_pieces(Eigen::Index count, Eigen::Index piece, int threads, const Work& work) {
-  parallel_for(static_cast<std::size_t>((count + piece - 1) / piece), threads, [&](std::size_t item, int) {
+  parallel_for((count + piece - 1) / piece, threads, [&](std::size_t item, int) {
     const Eigen::Index first = static_cast<Eigen::Index>(item) * piece;
     work(first, std::min(count, first + piece));
   });

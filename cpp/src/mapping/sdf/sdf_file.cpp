@@ -62,7 +62,7 @@ class Reader {
   std::size_t count(std::size_t bytes_each) {
     const auto value = take<std::uint64_t>();
     if (value > (end_ - at_) / bytes_each) refuse("damaged: a count goes beyond the end");
-    return static_cast<std::size_t>(value);
+    return value;
   }
   template <typename T, std::size_t n>
   void array(T (&values)[n]) {

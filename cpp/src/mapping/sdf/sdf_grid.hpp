@@ -76,7 +76,7 @@ class KeyTable {
   };
   static std::size_t hash(std::uint64_t key) {
     key *= 0x9e3779b97f4a7c15ull;
-    return static_cast<std::size_t>(key ^ (key >> 32));
+    return key ^ (key >> 32);
   }
   void grow();
 

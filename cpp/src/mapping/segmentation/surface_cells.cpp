@@ -15,7 +15,7 @@ struct KeyHash {
   std::size_t operator()(const Key& key) const {
     std::uint64_t hash = 0;
     for (const std::int64_t k : key) hash = (hash ^ static_cast<std::uint64_t>(k)) * 0x9E3779B97F4A7C15u;
-    return static_cast<std::size_t>(hash ^ (hash >> 32));
+    return hash ^ (hash >> 32);
   }
 };
 

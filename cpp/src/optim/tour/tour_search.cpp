@@ -20,7 +20,7 @@ std::vector<int> cheapest_insertion(const Eigen::MatrixXd& lengths, int n) {
     double extra = kInfinity;
     int before = -1;
   };
-  std::vector<int> next(static_cast<std::size_t>(n) + 2, -1);
+  std::vector<int> next(n + 2, -1);
   next[n] = n + 1;
   std::vector<Gap> best(n);
   std::vector<char> placed(n, 0);

@@ -16,8 +16,7 @@ int ConfigurationTree::add(const Eigen::VectorXd& q, int parent) {
   const std::size_t stride = static_cast<std::size_t>(size_) * kRow;
   if (lane == 0) rows_.resize(rows_.size() + stride, 1e15f);
   for (Eigen::Index i = 0; i < size_; ++i) {
-    rows_[static_cast<std::size_t>(block) * stride + static_cast<std::size_t>(i * kRow + lane)] =
-        static_cast<float>(q[i]);
+    rows_[static_cast<std::size_t>(block) * stride + i * kRow + lane] = static_cast<float>(q[i]);
   }
   values_.insert(values_.end(), q.data(), q.data() + size_);
   parents_.push_back(parent);

@@ -235,7 +235,7 @@ class MotionSearch {
     const auto off = [&](const auto& goal) { return metric_.distance(goal.q, q); };
     const auto nearest =
         std::min_element(ends_.begin(), ends_.end(), [&](const auto& a, const auto& b) { return off(a) < off(b); });
-    return static_cast<std::size_t>(nearest - ends_.begin());
+    return nearest - ends_.begin();
   }
 
   bool finish_shortened(const JointPath& found, double resolution) {

@@ -42,8 +42,7 @@ bool Roadmap::Data::draw(detail::CancelCheck& cancel) {
     for (Eigen::Index i = first; i < std::min(first + kBlock, count); ++i)
       vertices.col(i) = Rng(options.seed, static_cast<std::uint64_t>(i)).uniform(lower, upper);
   };
-  return parallel_for(static_cast<std::size_t>((count + kBlock - 1) / kBlock), 0, draw_block, cancel.monitor(),
-                      "roadmap");
+  return parallel_for((count + kBlock - 1) / kBlock, 0, draw_block, cancel.monitor(), "roadmap");
 }
 
 bool Roadmap::Data::index(detail::CancelCheck& cancel) {

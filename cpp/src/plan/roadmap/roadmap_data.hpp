@@ -46,7 +46,7 @@ struct ColumnCloud {
   CancelCheck* cancel = nullptr;  ///< While the tree is built: reading throws Stopped when it is stopped.
   mutable std::size_t reads = 0;
 
-  std::size_t kdtree_get_point_count() const { return static_cast<std::size_t>(columns.cols()); }
+  std::size_t kdtree_get_point_count() const { return columns.cols(); }
   double kdtree_get_pt(std::size_t i, std::size_t k) const {
     if (cancel && ++reads % 1024 == 0 && cancel->stopped()) throw Stopped{};
     return columns(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i));

@@ -89,8 +89,7 @@ class Cubics {
   Piece piece(double t) const {
     const auto next = std::upper_bound(times_.begin(), times_.end(), t);
     Piece p;
-    p.i = static_cast<std::size_t>(
-        std::clamp<std::ptrdiff_t>(next - times_.begin() - 1, 0, static_cast<std::ptrdiff_t>(times_.size()) - 2));
+    p.i = std::clamp<std::ptrdiff_t>(next - times_.begin() - 1, 0, static_cast<std::ptrdiff_t>(times_.size()) - 2);
     p.h = times_[p.i + 1] - times_[p.i];
     p.s = (t - times_[p.i]) / p.h;
     const Eigen::VectorXd delta = positions_[p.i + 1] - positions_[p.i];

@@ -167,7 +167,7 @@ class Builder {
   template <class Use>
   void each_neighbour(std::size_t at, const Use& use) const {
     const std::size_t poses = data_.poses(), voxel = at / poses, k = at % poses;
-    const std::size_t nz = data_.shape[2], ny = data_.shape[1], nx = static_cast<std::size_t>(data_.shape[0]);
+    const std::size_t nz = data_.shape[2], ny = data_.shape[1], nx = data_.shape[0];
     const std::size_t z = voxel % nz, y = voxel / nz % ny, x = voxel / nz / ny;
     if (z > 0) use(at - poses);
     if (z + 1 < nz) use(at + poses);

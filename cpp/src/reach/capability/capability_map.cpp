@@ -183,13 +183,12 @@ Eigen::Vector3d CapabilityMap::centre(std::int64_t voxel) const {
 
 Pose CapabilityMap::tool_pose(std::int64_t voxel, int pose) const {
   check_place(*this, voxel, pose);
-  return data_->pose(static_cast<std::size_t>(voxel) * data_->poses() + static_cast<std::size_t>(pose));
+  return data_->pose(static_cast<std::size_t>(voxel) * data_->poses() + pose);
 }
 
 Rejection CapabilityMap::classified(std::int64_t voxel, int pose) const {
   check_place(*this, voxel, pose);
-  return static_cast<Rejection>(
-      data_->classes[static_cast<std::size_t>(voxel) * data_->poses() + static_cast<std::size_t>(pose)]);
+  return static_cast<Rejection>(data_->classes[static_cast<std::size_t>(voxel) * data_->poses() + pose]);
 }
 
 Eigen::VectorXd CapabilityMap::configuration(std::int64_t voxel, int pose) const {

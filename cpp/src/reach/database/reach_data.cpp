@@ -18,7 +18,7 @@ namespace {
 
 /// Spreads neighbouring keys over the table (Fibonacci hashing).
 std::size_t slot_of(std::uint64_t key, std::size_t mask) {
-  return static_cast<std::size_t>((key * 0x9e3779b97f4a7c15ull) >> 32) & mask;
+  return ((key * 0x9e3779b97f4a7c15ull) >> 32) & mask;
 }
 
 template <typename T>
@@ -138,7 +138,7 @@ void ReachDatabase::Data::measure() {
   Eigen::Vector3d low = Eigen::Vector3d::Constant(detail::kInfinity), high = -low;
   Poses poses;
   const auto corner = [&](std::size_t p, int axis) {
-    return options.position_cell * static_cast<double>(positions[3 * p + static_cast<std::size_t>(axis)]);
+    return options.position_cell * static_cast<double>(positions[3 * p + axis]);
   };
   const auto look = [&](std::size_t p) {
     if (seen[p]) return;

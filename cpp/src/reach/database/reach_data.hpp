@@ -131,7 +131,7 @@ struct ReachDatabase::Data {
   std::vector<std::uint64_t> position_keys;
   std::vector<std::uint32_t> slots;  ///< Open addressing: position cell + 1, or 0 for a free slot.
 
-  std::size_t size() const { return cell_first.count == 0 ? 0 : static_cast<std::size_t>(cell_first.end()[-1]); }
+  std::size_t size() const { return cell_first.count == 0 ? 0 : cell_first.end()[-1]; }
   std::size_t cell_count() const { return rotation_ids.count; }
   std::size_t position_count() const { return position_first.count == 0 ? 0 : position_first.count - 1; }
   /// Points the views at `own`.

@@ -92,7 +92,7 @@ void check_bounds(const Data& data, const std::string& path) {
 
 template <typename T>
 detail::View<T> view(const detail::CheckedFile& file, std::uint64_t count) {
-  return {reinterpret_cast<const T*>(file.payload()), static_cast<std::size_t>(count)};
+  return {reinterpret_cast<const T*>(file.payload()), count};
 }
 
 }  // namespace

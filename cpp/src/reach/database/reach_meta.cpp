@@ -54,7 +54,7 @@ void read_arm(const JsonValue& meta, StoredArm& arm) {
   arm.other_values = meta.at("other_values").numbers();
   for (const JsonValue& row : meta.at("chain").array()) {
     const std::vector<double> numbers = row.numbers();
-    if (numbers.size() != static_cast<std::size_t>(StoredArm::kRow)) {
+    if (numbers.size() != StoredArm::kRow) {
       arm.chain.clear();  // what is left is not sound
       arm.chain.push_back(0);
       return;

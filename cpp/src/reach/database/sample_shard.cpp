@@ -65,7 +65,7 @@ void ShardSampler::draw(Rng& rng, int count) {
     }
     if (options_.thinning > 0) chances_[i] = rng.uniform();
   }
-  stored_.decode(numbers_.data(), static_cast<std::size_t>(count), q_.data());
+  stored_.decode(numbers_.data(), count, q_.data());
   if (weighs_)
     fk_jacobian_batch(arm_, q_.leftCols(count), poses_, J_);
   else

@@ -68,7 +68,7 @@ void read_at(int file, void* to, std::size_t size, std::uint64_t offset, const s
     const ssize_t got = ::pread(file, at, size, static_cast<off_t>(offset));
     if (got <= 0) throw IoError(path + ": cannot be read (" + (got < 0 ? std::strerror(errno) : "truncated") + ")");
     at += got;
-    size -= static_cast<std::size_t>(got);
+    size -= got;
     offset += static_cast<std::uint64_t>(got);
   }
 }

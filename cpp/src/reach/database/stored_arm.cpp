@@ -81,9 +81,8 @@ StoredArm::StoredArm(const JointGroup& arm) {
 
 bool StoredArm::sound() const {
   const auto count = joints.size();
-  if (count == 0 || count > static_cast<std::size_t>(kMaxColumns) || lower.size() != count || step.size() != count)
-    return false;
-  if (chain.size() % kRow != 0 || chain.size() > static_cast<std::size_t>(kRow * kMaxSegments)) return false;
+  if (count == 0 || count > kMaxColumns || lower.size() != count || step.size() != count) return false;
+  if (chain.size() % kRow != 0 || chain.size() > kRow * kMaxSegments) return false;
   if (root.size() != 12 || tip_pose.size() != 12 || other_joints.size() != other_values.size()) return false;
   for (const auto* values : {&lower, &step, &chain, &root, &tip_pose})
     for (const double value : *values)

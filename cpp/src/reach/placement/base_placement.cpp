@@ -85,7 +85,7 @@ struct BaseCells {
     require(cells < kMaxBasePoses, "step", step, "too small: more than 2e8 base poses over all targets");
   }
 
-  std::size_t size() const { return static_cast<std::size_t>(count[0] * count[1] * headings); }
+  std::size_t size() const { return count[0] * count[1] * headings; }
   Eigen::Vector3d pose(std::size_t cell) const {
     const auto i = static_cast<std::int64_t>(cell);
     const std::int64_t place = i % (count[0] * count[1]);
@@ -116,7 +116,7 @@ struct BaseCells {
         for (std::int64_t j = y_low; j <= y_high; ++j) {
           const double dy = ty - static_cast<double>(first[1] + j) * step;
           const std::uint32_t found = layer.at(c * dx + s * dy, c * dy - s * dx);
-          if (found > 0) visit(static_cast<std::size_t>((h * count[0] + i) * count[1] + j), found);
+          if (found > 0) visit((h * count[0] + i) * count[1] + j, found);
         }
       }
     }

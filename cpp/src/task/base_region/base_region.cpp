@@ -7,7 +7,7 @@
 namespace mmgrasp {
 
 std::size_t BaseRegion::count() const {
-  return static_cast<std::size_t>(std::count(cells.begin(), cells.end(), std::uint8_t{1}));
+  return std::count(cells.begin(), cells.end(), std::uint8_t{1});
 }
 
 std::vector<BaseRegion> compute_base_regions(const PartSupplyProblem& problem, const ReachDatabase& database,

@@ -6,9 +6,7 @@ namespace mmgrasp::detail {
 
 HomeMap::HomeMap(const BaseGrid& grid)
     : nx_(grid.nx),
-      centres_(
-          grid.headings.size(),
-          std::vector<std::uint8_t>(static_cast<std::size_t>(grid.nx) * static_cast<std::size_t>(grid.ny), unknown)),
+      centres_(grid.headings.size(), std::vector<std::uint8_t>(static_cast<std::size_t>(grid.nx) * grid.ny, unknown)),
       corners_(grid.headings.size(),
                std::vector<std::uint8_t>(static_cast<std::size_t>(grid.nx + 1) * static_cast<std::size_t>(grid.ny + 1),
                                          unknown)) {}

@@ -26,8 +26,7 @@ class HomeMap {
 
  private:
   std::size_t index(bool corner, int ix, int iy) const {
-    return static_cast<std::size_t>(iy) * static_cast<std::size_t>(nx_ + (corner ? 1 : 0)) +
-           static_cast<std::size_t>(ix);
+    return static_cast<std::size_t>(iy) * (nx_ + (corner ? 1 : 0)) + ix;
   }
 
   int nx_;

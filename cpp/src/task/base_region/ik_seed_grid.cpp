@@ -78,7 +78,7 @@ IkSeedGrid::Slice::Slice(const IkSeedGrid& grid, const Eigen::Matrix3d& R, doubl
   y0_ = floor_cell(bounds.min().y()) - 1;
   nx_ = floor_cell(bounds.max().x()) + 2 - x0_;
   ny_ = floor_cell(bounds.max().y()) + 2 - y0_;
-  const std::size_t count = static_cast<std::size_t>(nx_) * static_cast<std::size_t>(ny_);
+  const std::size_t count = static_cast<std::size_t>(nx_) * ny_;
   nodes_ = std::make_unique<std::atomic<Node*>[]>(count);
   for (std::size_t i = 0; i < count; ++i) nodes_[i].store(nullptr, std::memory_order_relaxed);
 }
@@ -94,8 +94,7 @@ IkSeedGrid::Node* IkSeedGrid::Slice::find(double x, double y, std::array<int, 2>
 
 IkSeedGrid::Node* IkSeedGrid::Slice::at(int ix, int iy) {
   if (ix < 0 || iy < 0 || ix >= nx_ || iy >= ny_) return nullptr;
-  std::atomic<Node*>& slot =
-      nodes_[static_cast<std::size_t>(iy) * static_cast<std::size_t>(nx_) + static_cast<std::size_t>(ix)];
+  std::atomic<Node*>& slot = nodes_[static_cast<std::size_t>(iy) * nx_ + ix];
   Node* node = slot.load(std::memory_order_acquire);
   if (node != nullptr) return node;
   auto fresh = std::make_unique<Node>();

@@ -6,9 +6,7 @@ namespace mmgrasp {
 
 void PartCells::add_window(int heading, int x0, int y0, int nx, int ny, const std::vector<std::uint8_t>& flags) {
   int left = nx, right = -1, low = ny, high = -1;
-  const auto at = [nx](int ix, int iy) {
-    return static_cast<std::size_t>(iy) * static_cast<std::size_t>(nx) + static_cast<std::size_t>(ix);
-  };
+  const auto at = [nx](int ix, int iy) { return static_cast<std::size_t>(iy) * nx + ix; };
   for (int iy = 0; iy < ny; ++iy) {
     for (int ix = 0; ix < nx; ++ix) {
       if (!flags[at(ix, iy)]) continue;
@@ -29,12 +27,11 @@ void PartCells::add_window(int heading, int x0, int y0, int nx, int ny, const st
 
 bool PartCells::operator[](std::size_t cell) const {
   const std::size_t row = nx_;
-  const int ix = static_cast<int>(cell % row), iy = static_cast<int>(cell / row % static_cast<std::size_t>(ny_)),
-            heading = static_cast<int>(cell / row / static_cast<std::size_t>(ny_));
+  const int ix = static_cast<int>(cell % row), iy = static_cast<int>(cell / row % ny_),
+            heading = static_cast<int>(cell / row / ny_);
   for (const Window& w : windows_) {
     if (w.heading != heading || ix < w.x0 || iy < w.y0 || ix >= w.x0 + w.nx || iy >= w.y0 + w.ny) continue;
-    return w.flags[static_cast<std::size_t>(iy - w.y0) * static_cast<std::size_t>(w.nx) +
-                   static_cast<std::size_t>(ix - w.x0)] != 0;
+    return w.flags[static_cast<std::size_t>(iy - w.y0) * static_cast<std::size_t>(w.nx) + ix - w.x0] != 0;
   }
   return false;
 }
@@ -50,9 +47,7 @@ CellMask PartCells::mask() const {
   for (const Window& w : windows_) {
     for (int iy = 0; iy < w.ny; ++iy) {
       const std::size_t row =
-          (static_cast<std::size_t>(w.heading) * static_cast<std::size_t>(ny_) + static_cast<std::size_t>(w.y0 + iy)) *
-              static_cast<std::size_t>(nx_) +
-          static_cast<std::size_t>(w.x0);
+          (static_cast<std::size_t>(w.heading) * ny_ + w.y0 + iy) * static_cast<std::size_t>(nx_) + w.x0;
       std::copy_n(w.flags.begin() + static_cast<std::ptrdiff_t>(iy) * w.nx, w.nx,
                   cells.begin() + static_cast<std::ptrdiff_t>(row));
     }

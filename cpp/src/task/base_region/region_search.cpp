@@ -178,7 +178,7 @@ BaseRegion RegionSearch::region(TrayId id) const {
   }
   for (const TrayWindow& window : windows_) {
     if (window.tray() != id || left.empty() || !window.begun()) continue;
-    std::vector<std::uint8_t> all(static_cast<std::size_t>(window.nx()) * static_cast<std::size_t>(window.ny()), 1);
+    std::vector<std::uint8_t> all(static_cast<std::size_t>(window.nx()) * window.ny(), 1);
     for (std::size_t slot = 0, place = 0; slot < window.parts().size(); ++slot) {
       if (!present({id, window.parts()[slot]})) continue;
       const std::vector<std::uint8_t> own = window.region_flags(slot);
@@ -228,7 +228,7 @@ void RegionSearch::common_cells(TrayId tray, const std::vector<int>& parts, Cell
     std::vector<std::size_t> slots;
     for (int part : parts) {
       const auto it = std::lower_bound(window.parts().begin(), window.parts().end(), part);
-      slots.push_back(static_cast<std::size_t>(it - window.parts().begin()));
+      slots.push_back(it - window.parts().begin());
     }
     for (int iy = 0; iy < window.ny(); ++iy) {
       for (int ix = 0; ix < window.nx(); ++ix) {

@@ -24,7 +24,7 @@ TrayWindow::TrayWindow(TrayId tray, int heading, std::vector<int> parts, const B
     : tray_(tray), heading_(heading), parts_(std::move(parts)) {
   span(middle.x() - grid.origin.x(), radius, grid.resolution, grid.nx, x0_, nx_);
   span(middle.y() - grid.origin.y(), radius, grid.resolution, grid.ny, y0_, ny_);
-  in_range_.assign(static_cast<std::size_t>(nx_) * static_cast<std::size_t>(ny_), 0);
+  in_range_.assign(static_cast<std::size_t>(nx_) * ny_, 0);
   for (int iy = 0; iy < ny_; ++iy) {
     for (int ix = 0; ix < nx_; ++ix)
       in_range_[cell(ix, iy)] = (pose(grid, false, ix, iy).head<2>() - middle).norm() <= radius;

@@ -61,12 +61,8 @@ class TrayWindow {
   void resume_without(const std::vector<std::uint8_t>& removed);
 
  private:
-  std::size_t cell(int ix, int iy) const {
-    return static_cast<std::size_t>(iy) * static_cast<std::size_t>(nx_) + static_cast<std::size_t>(ix);
-  }
-  std::size_t at(int ix, int iy) const {
-    return static_cast<std::size_t>(iy) * static_cast<std::size_t>(nx_ + 1) + static_cast<std::size_t>(ix);
-  }
+  std::size_t cell(int ix, int iy) const { return static_cast<std::size_t>(iy) * nx_ + ix; }
+  std::size_t at(int ix, int iy) const { return static_cast<std::size_t>(iy) * (nx_ + 1) + ix; }
   /// Is one of the cells around a corner marked good?
   bool beside(const std::vector<std::uint8_t>& good, int ix, int iy) const;
 

@@ -53,7 +53,7 @@ FloorField::FloorField(const CollisionChecker& checker, const Eigen::VectorXd& h
   resolution_ = std::max(resolution, std::sqrt(size.x() * size.y() / kMaxCells));
   nx_ = static_cast<int>(std::ceil(size.x() / resolution_));
   ny_ = static_cast<int>(std::ceil(size.y() / resolution_));
-  free_.assign(static_cast<std::size_t>(nx_) * static_cast<std::size_t>(ny_), 0);
+  free_.assign(static_cast<std::size_t>(nx_) * ny_, 0);
   look_at_rows(checker, home, base, threads, monitor);
   const auto n = static_cast<Eigen::Index>(places.size());
   lengths_ = Eigen::MatrixXd::Zero(n, n);
@@ -76,7 +76,7 @@ FloorField::FloorField(const CollisionChecker& checker, const Eigen::VectorXd& h
 void FloorField::look_at_rows(const CollisionChecker& checker, const Eigen::VectorXd& home, BaseKind base, int threads,
                               const Monitor& monitor) {
   parallel_for(
-      static_cast<std::size_t>(ny_), threads,
+      ny_, threads,
       [&](std::size_t row, int) {
         CollisionChecker own = checker.clone();
         BaseClearance clearance(own, home, kCheckStep);
@@ -124,8 +124,7 @@ std::vector<double> FloorField::search(const Eigen::Vector2d& from) const {
     const auto [so_far, at] = open.top();
     open.pop();
     if (so_far > field[at]) continue;
-    const int ix = static_cast<int>(at % static_cast<std::size_t>(nx_)),
-              iy = static_cast<int>(at / static_cast<std::size_t>(nx_));
+    const int ix = static_cast<int>(at % nx_), iy = static_cast<int>(at / nx_);
     for (int axis = 0; axis < static_cast<int>(kAxes.size()); ++axis) {
       if (!passable(ix, iy, axis)) continue;
       const auto& step = kAxes[axis];

@@ -41,7 +41,7 @@ class Enumeration {
       std::sort(found_.back().begin(), found_.back().end());
       return;
     }
-    const std::size_t more = (static_cast<std::size_t>(open_) + largest_ - 1) / std::max<std::size_t>(1, largest_);
+    const std::size_t more = (open_ + largest_ - 1) / std::max<std::size_t>(1, largest_);
     if (chosen_.size() + more > size_ || cost + static_cast<double>(more) * cheapest_ > allowed_) return;
     // The open element with the fewest sets left; each cover is met once: a set tried is barred from then on.
     int element = -1;

@@ -144,7 +144,7 @@ class LayerSearch {
   static std::size_t trays_of(const std::vector<Patch>& patches) {
     int last = -1;
     for (const Patch& patch : patches) last = std::max<int>(last, patch.tray);
-    return static_cast<std::size_t>(last + 1);
+    return last + 1;
   }
 
   std::vector<Start> cells() const {

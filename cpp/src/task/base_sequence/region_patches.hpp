@@ -21,7 +21,7 @@ struct Patch {
 
   bool has(int ix, int iy) const {
     return ix >= x0 && iy >= y0 && ix < x0 + nx && iy < y0 + ny &&
-           cells[static_cast<std::size_t>(iy - y0) * nx + (ix - x0)] != 0;
+           cells[static_cast<std::size_t>(iy - y0) * nx + ix - x0] != 0;
   }
 };
 

@@ -80,7 +80,7 @@ std::vector<CollisionChecker*> SceneStates::along(const std::vector<int>& interv
     while (by > 0 && tasks_[by - 1].object.empty() && !tasks_[by - 1].begins) --by;
     if (by > 0 && !tasks_[by - 1].object.empty())
       here = &held_.try_emplace(s, holding(by - 1, sequence[by - 1].q)).first->second;
-    result.insert(result.end(), static_cast<std::size_t>(intervals[s]), here);
+    result.insert(result.end(), intervals[s], here);
   }
   return result;
 }

@@ -66,8 +66,7 @@ SeededProblem DriveBySeeds::make(const ConfigurationSequence& sequence, int wayp
     const auto at = static_cast<std::ptrdiff_t>(t) + 1;
     const int end = std::accumulate(a.intervals.begin(), a.intervals.begin() + at, 0);
     const int intervals = dwell_intervals(steps_[t].dwell);
-    if (checkers)
-      a.checkers.insert(a.checkers.begin() + end, static_cast<std::size_t>(intervals), &scene_states_->at(t));
+    if (checkers) a.checkers.insert(a.checkers.begin() + end, intervals, &scene_states_->at(t));
     a.via_points.insert(a.via_points.begin() + at, VectorXd(a.via_points[t + 1]));
     if (route) ways.insert(ways.begin() + at, GuidedWay());
     a.intervals.insert(a.intervals.begin() + at, intervals);

@@ -27,7 +27,7 @@ struct RobustnessResult {
   /// Index of the stop with the least share; there must be one.
   std::size_t worst_stop() const {
     const auto less = [](const StopShare& a, const StopShare& b) { return a.rate() < b.rate(); };
-    return static_cast<std::size_t>(std::min_element(stops.begin(), stops.end(), less) - stops.begin());
+    return std::min_element(stops.begin(), stops.end(), less) - stops.begin();
   }
 };
 

@@ -45,7 +45,7 @@ class FirstTransfer {
   /// From another start each round, to any of the goals.
   void search(const GraspCandidate& candidate, int budget) {
     grasp_ = candidate.grasp;
-    query_.start = metric_.wrapped(candidate.starts[static_cast<std::size_t>(round_) % candidate.starts.size()]);
+    query_.start = metric_.wrapped(candidate.starts[round_ % candidate.starts.size()]);
     query_.goals.clear();
     for (const Eigen::VectorXd& goal : candidate.goals) query_.goals.push_back(metric_.wrapped(goal));
     query_.turned_goals = candidate.turned_goals;

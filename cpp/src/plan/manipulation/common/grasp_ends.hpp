@@ -41,7 +41,7 @@ class MMGRASP_EXPORT GraspEnds {
   struct Span {
     int first, count;
   };
-  static std::size_t span(int index, int side) { return static_cast<std::size_t>(2 * index + side); }
+  static std::size_t span(int index, int side) { return 2 * index + side; }
 
   int dimension_;
   JointMetric metric_;

@@ -38,7 +38,7 @@ InformedUnion::InformedUnion(const GraspEnds& ends, const Eigen::VectorXd& lower
   }
   first_of_.push_back(all_.size());
   pairs_.reserve(all_.size());
-  first_pair_.reserve(static_cast<std::size_t>(ends.size()) + 1);
+  first_pair_.reserve(ends.size() + 1);
 }
 
 void InformedUnion::set_cost(double cost) {

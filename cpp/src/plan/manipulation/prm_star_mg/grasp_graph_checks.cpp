@@ -202,7 +202,7 @@ void GraspGraphChecks::record_steps(const std::vector<Item>& items, const std::v
 std::pair<Eigen::VectorXd, Eigen::VectorXd> GraspGraphChecks::ends_of(const Item& step) const {
   const GraspGraph& graph = graph_of(step);
   const Eigen::VectorXd from = graph.configuration(roadmap_, graph.nodes[step.index]);
-  const Eigen::VectorXd to = graph.configuration(roadmap_, graph.nodes[static_cast<std::size_t>(step.index) + 1]);
+  const Eigen::VectorXd to = graph.configuration(roadmap_, graph.nodes[step.index + 1]);
   return {from, graph.candidate.metric.nearest(from, to)};
 }
 

@@ -98,7 +98,7 @@ bool RoadmapSearch::search_heap() {
 
 bool RoadmapSearch::search_batches() {
   const std::size_t count = graphs_.size();
-  const std::size_t size = input_.options.prm.batch > 0 ? static_cast<std::size_t>(input_.options.prm.batch) : count;
+  const std::size_t size = input_.options.prm.batch > 0 ? input_.options.prm.batch : count;
   for (std::size_t first = 0; first < count; first += size) {
     input_.monitor.report("search", static_cast<double>(first) / static_cast<double>(count));
     if (!search_batch(static_cast<int>(first), static_cast<int>(std::min(count, first + size)))) return false;

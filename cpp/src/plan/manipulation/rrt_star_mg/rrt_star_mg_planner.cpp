@@ -69,8 +69,8 @@ class RrtStarMg {
       if (i % kReportInterval == 0) input_.monitor.report("search", static_cast<double>(i) / options_.max_iterations);
       sample(options_.bidirectional ? i % 2 : GraspEnds::kStart);  // Line 26: SwapTrees.
     }
-    result_.stats.samples += static_cast<std::size_t>(i);
-    result_.stats.vertices += static_cast<std::size_t>(trees_.vertex_count());
+    result_.stats.samples += i;
+    result_.stats.vertices += trees_.vertex_count();
     finish_path(input_, result_);
     if (options_.keep_trees) append_search_trees(trees_, result_.trees);
   }

@@ -40,8 +40,7 @@ void TreeIndex::insert_wrapped(int id, const double* q) {
   ++size_;
   for (;;) {
     std::size_t at = 0;
-    while (nodes_[at].axis >= 0)
-      at = static_cast<std::size_t>(q[nodes_[at].axis] < nodes_[at].split ? nodes_[at].low : nodes_[at].high);
+    while (nodes_[at].axis >= 0) at = q[nodes_[at].axis] < nodes_[at].split ? nodes_[at].low : nodes_[at].high;
     for (int b = nodes_[at].low; b >= 0; b = blocks_[b].next) {
       if (blocks_[b].count == kBlock) continue;
       put(b, id, q);

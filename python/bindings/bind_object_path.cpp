@@ -29,7 +29,9 @@ const std::vector<OptionField<ObjectPathOptions>>& object_path_fields() {
       option<O>("check_edges", &O::check_edges, "check motions between poses for collisions"),
       option<O>("single_configuration", &O::single_configuration, "one arm configuration a pose (P2's single IK)"),
       option<O>("all_turns", &O::all_turns, "joints that may turn more than once come in every turn"),
-      option<O>("redundant_values", &O::redundant_values, "samples of a seventh joint; 0: chosen"),
+      option<O>("redundant_values", &O::redundant_values, "samples of a seventh joint, evenly over its range; 0: 24"),
+      option<O>("base_spacing", &O::base_spacing, "grid of the places where a moving base may stand [m]"),
+      option<O>("base_headings", &O::base_headings, "headings of the base at each place, evenly over a turn"),
       option<O>("gravity", &O::gravity, "along the world's -z [m/s2]"),
       option<O>("max_sag", &O::max_sag, "largest displacement allowed at any pose [m]; 0: any")};
   return fields;

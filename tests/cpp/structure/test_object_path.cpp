@@ -4,17 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <limits>
 #include <string>
 
 #include "beam_frames.hpp"
-#include "mmgrasp/collision/checker.hpp"
-#include "mmgrasp/collision/edge.hpp"
+#include "enumerated_path.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/random.hpp"
-#include "mmgrasp/robot/ik_branches.hpp"
-#include "mmgrasp/robot/manipulability.hpp"
 #include "mmgrasp/structure/pipe_grasps.hpp"
 #include "support/puma_arm.hpp"
 
@@ -56,57 +51,6 @@ std::vector<Grasp> some_grasps(int count, unsigned seed = 5) {
   return sample_pipe_grasps(figure_3_4(), count, options).grasps;
 }
 
-/// Everything checked by itself, all sequences enumerated.
-struct Enumerated {
-  std::vector<int> violations;
-  double cost = std::numeric_limits<double>::infinity();
-  long sequences = 0;
-
-  Enumerated(const ObjectPathProblem& problem, const Grasp& grasp, const ObjectPathOptions& options) {
-    World world = problem.world;
-    world.add("pipe", WorldObject{problem.object, problem.T_world_object[0]});
-    world.attach("pipe", "l6", grasp.T_object_hand.inverse(), problem.touch_links);
-    CollisionChecker checker(problem.group, world);
-    std::vector<std::vector<VectorXd>> layers;
-    for (const Pose& T : problem.T_world_object) {
-      const std::vector<VectorXd> all = solve_ik_branches(problem.group, T * grasp.T_object_hand).solutions;
-      layers.emplace_back();
-      for (const VectorXd& q : all) {
-        if (checker.is_free(q)) layers.back().push_back(q);
-      }
-      violations.push_back(all.empty() ? 2 : layers.back().empty() ? 1 : 0);
-    }
-    const SupportedFrame held(*problem.frame, {beam_support(grasp)});
-    double sag = 0;
-    for (std::size_t i = 1; i < layers.size(); ++i) {
-      sag += held.largest_displacement(gravity_in_object(problem.T_world_object[i])).value;
-    }
-    const std::function<void(std::size_t, const VectorXd&, double)> go_on = [&](std::size_t i, const VectorXd& last,
-                                                                                double so_far) {
-      if (i == layers.size()) {
-        ++sequences;
-        cost = std::min(cost, so_far + options.deflection_weight * sag / options.deflection_scale);
-        return;
-      }
-      for (const VectorXd& q : layers[i]) {
-        if ((q - last).cwiseAbs().maxCoeff() > options.max_joint_step) continue;
-        const Pose middle = problem.group.fk((q + last) / 2) * grasp.T_object_hand.inverse();
-        const Pose &a = problem.T_world_object[i - 1], &b = problem.T_world_object[i];
-        const Eigen::Quaterniond half = Eigen::Quaterniond(a.linear()).slerp(0.5, Eigen::Quaterniond(b.linear()));
-        if ((middle.translation() - (a.translation() + b.translation()) / 2).norm() > options.position_tolerance)
-          continue;
-        if (half.angularDistance(Eigen::Quaterniond(middle.linear())) > options.rotation_tolerance) continue;
-        if (!checker.edge_is_free(last, q, options.edge_step)) continue;
-        const Vector6d motion = pose_difference(a * grasp.T_object_hand, b * grasp.T_object_hand);
-        go_on(i + 1, q,
-              so_far + options.motion_weight * (q - last).norm() +
-                  options.manipulability_weight * force_manipulability(problem.group, q, motion));
-      }
-    };
-    for (const VectorXd& q : layers[0]) go_on(1, q, 0);
-  }
-};
-
 TEST(ObjectPath, EqualsEnumeration) {
   int solved = 0, colliding = 0, refused = 0;
   for (const char* scene : {"empty", "posts", "bead", "strict"}) {
@@ -122,7 +66,7 @@ TEST(ObjectPath, EqualsEnumeration) {
     ObjectPathEvaluator evaluator(problem, options);
     for (const Grasp& grasp : some_grasps(60)) {
       const ObjectPathResult found = evaluator.evaluate(grasp);
-      const Enumerated truth(problem, grasp, options);
+      const Enumerated truth(problem, grasp, options, all_branches(problem.group));
       EXPECT_EQ(found.violations, truth.violations);
       EXPECT_EQ(found.outcome == Outcome::solved, truth.sequences > 0);
       EXPECT_EQ(found.violation == 0, truth.sequences > 0);
@@ -251,6 +195,23 @@ TEST(ObjectPath, LimitsOfSagAndStressAreThoseOfTheFrame) {
   EXPECT_GT(stressed, 0);
 }
 
+TEST(ObjectPath, RefusesBasesThatCannotGoSideways) {
+  const test::PumaArm driving(2.6, BaseKind::diff_drive), gliding(2.6, BaseKind::omni);
+  ObjectPathProblem problem = arc(3, false);
+  problem.group = driving.group();
+  try {
+    follow_object_path(problem, grasp_at(0, 0.1, 0));
+    FAIL() << "a diff_drive base was taken";
+  } catch (const InvalidInput& error) {
+    EXPECT_NE(std::string(error.what()).find("diff_drive"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("group"), std::string::npos) << error.what();
+  }
+  problem.group = driving.robot().chain("l0", "l6");  // the arm alone stands still
+  EXPECT_NO_THROW(follow_object_path(problem, grasp_at(0, 0.1, 0)));
+  problem.group = gliding.group();
+  EXPECT_NO_THROW(follow_object_path(problem, grasp_at(0, 0.1, 0)));
+}
+
 TEST(ObjectPath, RefusesBadProblems) {
   ObjectPathProblem problem = arc(3);
   problem.T_world_object.resize(1);
@@ -272,6 +233,12 @@ TEST(ObjectPath, RefusesBadProblems) {
   options.max_sag = -1e-3;
   EXPECT_THROW(follow_object_path(problem, grasp_at(0, 0.1, 0), options), InvalidInput);
   options.max_sag = 1e-3;  // and the problem says nothing of how it bends
+  EXPECT_THROW(follow_object_path(problem, grasp_at(0, 0.1, 0), options), InvalidInput);
+  options = {};
+  options.base_spacing = 0;
+  EXPECT_THROW(follow_object_path(problem, grasp_at(0, 0.1, 0), options), InvalidInput);
+  options = {};
+  options.base_headings = 0;
   EXPECT_THROW(follow_object_path(problem, grasp_at(0, 0.1, 0), options), InvalidInput);
   options = {};
   options.deflection_scale = 0;

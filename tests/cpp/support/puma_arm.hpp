@@ -12,8 +12,8 @@ namespace mmgrasp::test {
 /// A six-axis arm with shoulder, elbow and a wrist whose axes meet, built from text; thin links as shapes.
 class PumaArm {
  public:
-  /// `elbow_limit` bounds the third joint from above.
-  explicit PumaArm(double elbow_limit = 2.6) {
+  /// `elbow_limit` bounds the third joint from above; a base that moves is part of the group.
+  explicit PumaArm(double elbow_limit = 2.6, BaseKind base = BaseKind::fixed) {
     std::string urdf = "<robot name=\"puma\"><link name=\"l0\"/>";
     const auto link = [&](int i, double length) {
       urdf += "<link name=\"l" + std::to_string(i) + "\">";
@@ -48,10 +48,13 @@ class PumaArm {
                 "\" reason=\"User\"/>";
       }
     }
-    robot_ = std::make_shared<Robot>(Robot::from_strings(urdf + "</robot>", srdf + "</robot>"));
-    group_ = std::make_shared<JointGroup>(robot_->chain("l0", "l6"));
+    RobotOptions options;
+    options.base = base;
+    robot_ = std::make_shared<Robot>(Robot::from_strings(urdf + "</robot>", srdf + "</robot>", options));
+    group_ = std::make_shared<JointGroup>(robot_->chain("l0", "l6", base != BaseKind::fixed));
   }
 
+  const Robot& robot() const { return *robot_; }
   const JointGroup& group() const { return *group_; }
   double reach() const { return kUpper + kFore + kHand; }
 

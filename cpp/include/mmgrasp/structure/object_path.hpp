@@ -47,11 +47,13 @@ struct MMGRASP_EXPORT ObjectPathOptions {
   double rotation_tolerance = 0.05;  ///< And turned by no more than this from it [rad]; > 0.
   double edge_step = 0.02;           ///< No joint moves more than this between two collision checks [rad or m]; > 0.
   bool check_edges = true;           ///< Check motions between waypoints, which P2's Algorithm 3.1 leaves out.
-  /// Use the arm configuration nearest to the last one alone, as P2's single-IK variant does (3.5.2.4). The first is
-  /// the one nearest to the middle of the joints' limits.
+  /// Only one arm configuration at each pose, as P2's single-IK variant has it (3.5.2.4): what a numerical solver finds
+  /// from the one before, at first from the middle of the joints' limits, and from random starts where that fails.
   bool single_configuration = false;
   bool all_turns = true;      ///< Joints that may turn more than once come in every turn.
-  int redundant_values = 0;   ///< Samples of a seventh joint; 0: as solve_ik_branches. >= 0.
+  int redundant_values = 0;   ///< Samples of a seventh joint, evenly over its range; 0: 24. >= 0.
+  double base_spacing = 0.2;  ///< Of the places where a moving base may stand, a grid along x and y [m]; > 0.
+  int base_headings = 4;      ///< Of the base at each place, evenly over a turn; > 0.
   double gravity = kGravity;  ///< Along the world's -z [m/s2]; >= 0.
   double max_sag = 0;         ///< At each pose the object may bend by no more than this [m]; 0: as it likes. >= 0.
   void check() const;

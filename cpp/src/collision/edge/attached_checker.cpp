@@ -67,6 +67,13 @@ bool AttachedChecker::edge_is_free(const Eigen::VectorXd& q0, const Eigen::Vecto
   return impl_->engine.is_free(q0) && impl_->engine.edge_stays_free(q0, q1, step);
 }
 
+bool AttachedChecker::way_is_free(const Eigen::VectorXd& q0, const Eigen::VectorXd& q1, const EdgeOptions& options) {
+  impl_->update_bounds();
+  if (options.continuous) return advance_edge(impl_->engine, q0, q1, options.tolerance).free;
+  const double step = edge_step(q1 - q0, impl_->motion_bounds, options.joint_step, options.workspace_step);
+  return impl_->engine.edge_stays_free(q0, q1, step, true);
+}
+
 DistanceResult AttachedChecker::distance(const Eigen::VectorXd& q) {
   check_configuration(impl_->engine.group(), q, "q");
   return impl_->engine.distance(q, false);

@@ -22,12 +22,32 @@ bool polish(const JointGroup& group, const Pose& T_world_tip, Eigen::VectorXd& q
   return descend(group, T_world_tip, q, exact, workspace, false).converged;
 }
 
-/// Whole turns bring a value nearest to the middle of its limits.
-void turn_inside(const JointGroup& group, Eigen::VectorXd& q) {
-  for (Eigen::Index i = 0; i < q.size(); ++i) {
+}  // namespace
+
+ClosedFormSolver::ClosedFormSolver(const JointGroup& group, int values) : group_(group), screws_(screws_of(group)) {
+  if (screws_.size == 0) return;
+  locked_ = screws_.size == 7 ? mmgrasp::detail::redundant_joint(screws_) : -1;
+  if (screws_.size == 6) form_ = closed_form_of(screws_);
+  known_form_ = locked_ >= 0 || form_.family != ClosedForm::Family::none;
+  if (locked_ >= 0) {
+    values_ = values;
+    lower_ = group.sample_lower()[locked_];
+    cell_ = (group.sample_upper()[locked_] - lower_) / values;
+  }
+  q_.resize(screws_.size);
+  middle_ = Eigen::VectorXd::Zero(screws_.size);
+  for (int i = 0; i < screws_.size; ++i) {
     const double lower = group.lower()[i], upper = group.upper()[i];
-    const double middle = std::isfinite(lower) && std::isfinite(upper) ? 0.5 * (lower + upper) : 0.0;
-    q[i] = middle + wrap_angle(q[i] - middle);
+    if (std::isfinite(lower) && std::isfinite(upper)) middle_[i] = 0.5 * (lower + upper);
+  }
+}
+
+/// Whole turns bring a value nearest to the middle of its limits.
+void ClosedFormSolver::turn_inside(Eigen::VectorXd& q) const {
+  for (Eigen::Index i = 0; i < q.size(); ++i) {
+    const double lower = group_.lower()[i], upper = group_.upper()[i];
+    const double from_middle = q[i] - middle_[i];
+    q[i] = middle_[i] + (std::abs(from_middle) < kPi ? from_middle : wrap_angle(from_middle));
     // A value on its limit may have come out a rounding beyond it.
     constexpr double kRounding = 1e-9;
     if (q[i] < lower && q[i] > lower - kRounding) q[i] = lower;
@@ -35,60 +55,71 @@ void turn_inside(const JointGroup& group, Eigen::VectorXd& q) {
   }
 }
 
-bool known(const std::vector<Eigen::VectorXd>& all, std::size_t first, const Eigen::VectorXd& q) {
-  for (std::size_t i = first; i < all.size(); ++i) {
+/// The branch has met another one of the first `count` kept in a singularity.
+bool ClosedFormSolver::known(std::size_t count) const {
+  for (std::size_t i = 0; i < count; ++i) {
     double largest = 0;
-    for (Eigen::Index j = 0; j < q.size(); ++j) largest = std::max(largest, std::abs(wrap_angle(q[j] - all[i][j])));
+    for (Eigen::Index j = 0; j < q_.size() && largest < kSame; ++j) {
+      const double difference = std::abs(q_[j] - kept_[i][j]);  // both within half a turn of the middle
+      largest = std::max(largest, std::min(difference, std::abs(kTwoPi - difference)));
+    }
     if (largest < kSame) return true;
   }
   return false;
 }
 
-}  // namespace
+ClosedFormSolver::Counts ClosedFormSolver::solve(const Pose& T_world_tip, double outside, const Use& use) {
+  Counts counts;
+  if (!known_form_) return counts;
+  const Rigid target = Rigid(T_world_tip) * screws_.tip.inverse();
+  Branches branches;
+  for (int i = 0; i < values_; ++i) {
+    Rigid G = target;
+    double locked_value = 0;
+    if (locked_ >= 0) {
+      locked_value = lower_ + (i + 0.5) * cell_;
+      const Screws six = lock_joint(screws_, locked_, locked_value, G);
+      solve_closed_form(closed_form_of(six), six, G, branches);
+    } else {
+      solve_closed_form(form_, screws_, G, branches);
+    }
+    counts.free = counts.free || branches.free;
+    std::size_t kept = 0;
+    bool any = false;
+    for (int b = 0; b < branches.count; ++b) {
+      const auto& value = branches.value[b];
+      for (int j = 0; j < screws_.size; ++j)
+        q_[j] = j == locked_ ? locked_value : value[locked_ >= 0 && j > locked_ ? j - 1 : j];
+      if (outside < kInfinity) {
+        turn_inside(q_);
+        if (!group_.within_limits(q_, outside)) {
+          ++counts.far;
+          any = true;
+          continue;
+        }
+      }
+      if (!polish(group_, T_world_tip, q_, workspace_)) continue;
+      turn_inside(q_);
+      if (known(kept)) continue;
+      if (kept == kept_.size()) kept_.emplace_back();
+      kept_[kept++] = q_;
+      any = true;
+      use(q_, workspace_.J);
+    }
+    counts.without += !any;
+  }
+  return counts;
+}
 
 Candidates closed_form_candidates(const JointGroup& group, const Pose& T_world_tip, int values) {
   Candidates candidates;
-  const Screws screws = screws_of(group);
-  if (screws.size == 0) return candidates;
-  const int locked = screws.size == 7 ? redundant_joint(screws) : -1;
-  ClosedForm form;
-  if (screws.size == 6) form = closed_form_of(screws);
-  candidates.known_form = locked >= 0 || form.family != ClosedForm::Family::none;
-  if (!candidates.known_form) return candidates;
-  candidates.redundant_joint = locked;
-  const Rigid target = Rigid(T_world_tip) * screws.tip.inverse();
-  double lower = 0, cell = 0;
-  if (locked >= 0) {
-    lower = group.sample_lower()[locked];
-    cell = (group.sample_upper()[locked] - lower) / values;
-  } else {
-    values = 1;
-  }
-  IkWorkspace workspace;
-  Branches branches;
-  Eigen::VectorXd q(screws.size);
-  for (int i = 0; i < values; ++i) {
-    Rigid G = target;
-    double locked_value = 0;
-    if (locked >= 0) {
-      locked_value = lower + (i + 0.5) * cell;
-      const Screws six = lock_joint(screws, locked, locked_value, G);
-      solve_closed_form(closed_form_of(six), six, G, branches);
-    } else {
-      solve_closed_form(form, screws, G, branches);
-    }
-    candidates.free = candidates.free || branches.free;
-    const std::size_t first = candidates.q.size();
-    for (int b = 0; b < branches.count; ++b) {
-      const auto& value = branches.value[b];
-      for (int j = 0; j < screws.size; ++j)
-        q[j] = j == locked ? locked_value : value[locked >= 0 && j > locked ? j - 1 : j];
-      if (!polish(group, T_world_tip, q, workspace)) continue;
-      turn_inside(group, q);
-      if (!known(candidates.q, first, q)) candidates.q.push_back(q);
-    }
-    candidates.without += candidates.q.size() == first;
-  }
+  ClosedFormSolver solver(group, values);
+  candidates.known_form = solver.known_form();
+  candidates.redundant_joint = solver.redundant_joint();
+  const ClosedFormSolver::Counts counts = solver.solve(
+      T_world_tip, kInfinity, [&](const Eigen::VectorXd& q, const Matrix6Xd&) { candidates.q.push_back(q); });
+  candidates.without = counts.without;
+  candidates.free = counts.free;
   return candidates;
 }
 

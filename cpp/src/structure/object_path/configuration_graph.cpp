@@ -1,5 +1,7 @@
 #include "structure/object_path/configuration_graph.hpp"
 
+#include <utility>
+
 #include "mmgrasp/core/detail/numbers.hpp"
 
 namespace mmgrasp::detail {
@@ -8,26 +10,67 @@ constexpr double kNone = kInfinity;
 
 ConfigurationGraph::ConfigurationGraph(const std::vector<int>& sizes) {
   for (const int size : sizes) alive_.emplace_back(size, 1);
-  for (std::size_t i = 0; i + 1 < sizes.size(); ++i) {
-    edges_.push_back(Eigen::MatrixXd::Constant(sizes[i + 1], sizes[i], kNone));
+  vertex_checked_.resize(sizes.size());
+  for (std::size_t i = 0; i < sizes.size(); ++i) vertex_checked_[i].assign(sizes[i], 0);
+  if (!sizes.empty()) joins_.resize(sizes.size() - 1);
+}
+
+void ConfigurationGraph::add_edge(std::size_t layer, int from, int to, double cost) {
+  Layer& joins = joins_[layer];
+  while (static_cast<int>(joins.first.size()) <= to) joins.first.push_back(static_cast<int>(joins.edges.size()));
+  joins.edges.push_back({from, false, cost});
+}
+
+std::pair<std::size_t, std::size_t> ConfigurationGraph::range(const Layer& layer, std::size_t to) const {
+  const std::size_t end = layer.edges.size();
+  if (to >= layer.first.size()) return {end, end};
+  return {layer.first[to], to + 1 < layer.first.size() ? layer.first[to + 1] : end};
+}
+
+void ConfigurationGraph::remove_edge(std::size_t layer, int from, int to) {
+  const auto [first, last] = range(joins_[layer], to);
+  for (std::size_t k = first; k < last; ++k) {
+    if (joins_[layer].edges[k].from == from) joins_[layer].edges[k].cost = kNone;
   }
 }
 
-ConfigurationGraph::Path ConfigurationGraph::cheapest() const {
-  std::vector<double> cost;
-  for (const char alive : alive_[0]) cost.push_back(alive ? 0 : kNone);
+ConfigurationGraph::Path ConfigurationGraph::cheapest(const Check* check) {
+  const auto stays = [&](std::size_t layer, std::size_t vertex) {
+    if (!alive_[layer][vertex]) return false;
+    if (check == nullptr || vertex_checked_[layer][vertex]) return true;
+    vertex_checked_[layer][vertex] = 1;
+    alive_[layer][vertex] = check->vertex(layer, static_cast<int>(vertex));
+    return alive_[layer][vertex] != 0;
+  };
+  std::vector<double> cost(alive_[0].size()), next;
+  for (std::size_t i = 0; i < cost.size(); ++i) cost[i] = stays(0, i) ? 0 : kNone;
   std::vector<std::vector<int>> before;
-  for (std::size_t layer = 0; layer < edges_.size(); ++layer) {
-    std::vector<double> next(alive_[layer + 1].size(), kNone);
+  for (std::size_t layer = 0; layer < joins_.size(); ++layer) {
+    Layer& joins = joins_[layer];
+    next.assign(alive_[layer + 1].size(), kNone);
     before.emplace_back(next.size(), -1);
-    for (std::size_t from = 0; from < cost.size(); ++from) {
-      if (cost[from] == kNone) continue;
-      const double* way = edges_[layer].col(static_cast<long>(from)).data();
-      for (std::size_t to = 0; to < next.size(); ++to) {
-        const double through = cost[from] + way[to];
-        if (through >= next[to] || !alive_[layer + 1][to]) continue;
-        next[to] = through;
-        before[layer][to] = static_cast<int>(from);
+    for (std::size_t to = 0; to < next.size(); ++to) {
+      if (!alive_[layer + 1][to]) continue;
+      const auto [first, last] = range(joins, to);
+      for (;;) {
+        double least = kNone;
+        std::size_t best = last;
+        for (std::size_t k = first; k < last; ++k) {
+          const double through = cost[joins.edges[k].from] + joins.edges[k].cost;
+          if (through >= least) continue;
+          least = through;
+          best = k;
+        }
+        if (best == last || !stays(layer + 1, to)) break;
+        Edge& edge = joins.edges[best];
+        if (check != nullptr && !edge.checked && !check->edge(layer, edge.from, static_cast<int>(to))) {
+          edge.cost = kNone;
+          continue;
+        }
+        edge.checked = check != nullptr || edge.checked;
+        next[to] = least;
+        before[layer][to] = edge.from;
+        break;
       }
     }
     cost.swap(next);
@@ -50,13 +93,14 @@ ConfigurationGraph::Path ConfigurationGraph::cheapest() const {
 int ConfigurationGraph::gaps() const {
   int count = 0;
   std::vector<char> reached = alive_[0];
-  for (std::size_t layer = 0; layer < edges_.size(); ++layer) {
+  for (std::size_t layer = 0; layer < joins_.size(); ++layer) {
     std::vector<char> next(alive_[layer + 1].size(), 0);
     bool any = false;
     for (std::size_t to = 0; to < next.size(); ++to) {
-      for (std::size_t from = 0; from < reached.size() && !next[to]; ++from) {
-        next[to] = reached[from] && alive_[layer + 1][to] &&
-                   edges_[layer](static_cast<long>(to), static_cast<long>(from)) < kNone;
+      if (!alive_[layer + 1][to]) continue;
+      const auto [first, last] = range(joins_[layer], to);
+      for (std::size_t k = first; k < last && !next[to]; ++k) {
+        next[to] = reached[joins_[layer].edges[k].from] && joins_[layer].edges[k].cost < kNone;
       }
       any = any || next[to];
     }

@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
-#include "mmgrasp/robot/ik_branches.hpp"
 #include "structure/object_path/configuration_graph.hpp"
 #include "structure/object_path/held_object.hpp"
+#include "structure/object_path/path_configurations.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -19,6 +20,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kFinalStep = 0.005;  // [rad or m]
+constexpr int kMany = 64;             // configurations at a pose
 
 /// One grasp's configurations and what is known of them.
 struct Configurations {
@@ -72,54 +74,53 @@ void ObjectPathOptions::check() const {
   weight(gravity, "gravity");
   weight(max_sag, "max_sag");
   require(redundant_values >= 0, "redundant_values", redundant_values, "must not be negative");
+  positive(base_spacing, "base_spacing");
+  require(base_headings > 0, "base_headings", base_headings, "must be positive");
 }
 
 struct ObjectPathEvaluator::Impl {
   ObjectPathProblem problem;
   ObjectPathOptions options;
   detail::HeldObject held{problem};
-  IkOptions ik;
   EdgeOptions edge;
+  std::map<const JointGroup*, detail::PathConfigurations> solvers;  ///< For each opening of the fingers.
   const JointGroup* group = nullptr;
+  detail::PathConfigurations* solver = nullptr;
   detail::AttachedChecker* checker = nullptr;
+  Poses half_way_poses;         ///< Of the object, after each pose.
   bool stress_limited = false;  ///< Some member's material has a limit.
 
   Impl(const ObjectPathProblem& given, const ObjectPathOptions& with) : problem(given), options(with) {}
   Configurations find(const Poses& T_world_hand, ObjectPathResult& result) const;
   bool is_free(Configurations& found, std::size_t layer, int i, ObjectPathResult& result);
-  void keep_nearest(Configurations& found, ObjectPathResult& result);
   void count_violations(Configurations& found, ObjectPathResult& result);
   VectorXd step(const Eigen::Ref<const VectorXd>& from, const Eigen::Ref<const VectorXd>& to) const;
   ConfigurationGraph graph(const Configurations& found) const;
-  bool edge_is_allowed(std::size_t layer, const VectorXd& from, const VectorXd& to, const Pose& T_hand_object);
+  bool stays_near(std::size_t layer, const VectorXd& from, const VectorXd& to, const Pose& T_hand_object) const;
   void bend(const Grasp& grasp, ObjectPathResult& result) const;
   void finish(const Configurations& found, const ConfigurationGraph::Path& path, ObjectPathResult& result) const;
 };
 
 Configurations ObjectPathEvaluator::Impl::find(const Poses& T_world_hand, ObjectPathResult& result) const {
   Configurations found;
-  Matrix6Xd J(6, group->size());
-  Pose T;
+  solver->place_bases(T_world_hand);
+  VectorXd last = 0.5 * (group->sample_lower() + group->sample_upper());
   for (std::size_t i = 0; i < T_world_hand.size(); ++i) {
-    const IkBranches branches =
-        solve_ik_branches(*group, T_world_hand[i], ik, {}, options.redundant_values, {}, options.all_turns);
-    const auto count = static_cast<Eigen::Index>(branches.solutions.size());
+    const Vector6d motion = i == 0 ? Vector6d::Zero().eval() : pose_difference(T_world_hand[i - 1], T_world_hand[i]);
+    detail::PathConfigurations::Layer layer = options.single_configuration
+                                                  ? solver->single(T_world_hand[i], motion, last)
+                                                  : solver->at(T_world_hand[i], motion);
+    const Eigen::Index count = layer.q.cols();
     if (count == 0) {
       result.violations[i] = 2;
-      result.rejections += branches.rejections;
+      result.rejections += layer.rejections;
+    } else if (options.single_configuration) {
+      last = layer.q.col(0);
     }
     result.configurations += static_cast<int>(count);
-    found.q.emplace_back(group->size(), count);
+    found.q.push_back(std::move(layer.q));
     found.known.emplace_back(count, 0);
-    found.manipulability.emplace_back(VectorXd::Zero(count));
-    for (Eigen::Index k = 0; k < count; ++k) found.q[i].col(k) = branches.solutions[k];
-    if (i == 0 || options.manipulability_weight == 0) continue;
-    const Vector6d motion = pose_difference(T_world_hand[i - 1], T_world_hand[i]);
-    if (motion.norm() < 1e-12) continue;  // P2's direction is undefined: nothing is added
-    for (Eigen::Index k = 0; k < count; ++k) {
-      group->fk_jacobian(found.q[i].col(k), T, J);
-      found.manipulability[i](k) = motion.norm() / (J.transpose() * motion).norm();
-    }
+    found.manipulability.push_back(std::move(layer.manipulability));
   }
   return found;
 }
@@ -144,27 +145,6 @@ VectorXd ObjectPathEvaluator::Impl::step(const Eigen::Ref<const VectorXd>& from,
   return difference;
 }
 
-/// P2's single-IK variant: one configuration a waypoint, the free one nearest to the last.
-void ObjectPathEvaluator::Impl::keep_nearest(Configurations& found, ObjectPathResult& result) {
-  VectorXd last;
-  for (std::size_t i = 0; i < found.q.size(); ++i) {
-    int best = -1;
-    for (int k = 0; k < found.q[i].cols(); ++k) {
-      if (!is_free(found, i, k, result)) continue;
-      if (best < 0 || (i > 0 && step(last, found.q[i].col(k)).norm() < step(last, found.q[i].col(best)).norm()))
-        best = k;
-    }
-    if (best < 0) {
-      result.violations[i] = 1;
-      continue;
-    }
-    last = found.q[i].col(best);
-    found.q[i] = last;
-    found.known[i] = {1};
-    found.manipulability[i] = VectorXd::Constant(1, found.manipulability[i](best));
-  }
-}
-
 void ObjectPathEvaluator::Impl::count_violations(Configurations& found, ObjectPathResult& result) {
   for (std::size_t i = 0; i < found.q.size(); ++i) {
     bool any = false;
@@ -180,35 +160,52 @@ ConfigurationGraph ObjectPathEvaluator::Impl::graph(const Configurations& found)
   const double motion = options.motion_weight / options.motion_scale;
   const double force = options.manipulability_weight / options.manipulability_scale;
   const auto& wraps = group->wraps();
+  std::vector<int> order;
   for (std::size_t layer = 0; layer + 1 < sizes.size(); ++layer) {
-    for (int a = 0; a < sizes[layer]; ++a) {
-      for (int b = 0; b < sizes[layer + 1]; ++b) {
-        const double *from = found.q[layer].col(a).data(), *to = found.q[layer + 1].col(b).data();
+    // Of many configurations only those are tried that are near in the value that spreads most.
+    const MatrixXd& q = found.q[layer];
+    Eigen::Index value = -1;
+    double widest = 0;
+    for (Eigen::Index k = 0; sizes[layer] > kMany && k < q.rows(); ++k) {
+      const double spread = wraps[k] ? 0 : q.row(k).maxCoeff() - q.row(k).minCoeff();
+      if (spread <= widest) continue;
+      widest = spread;
+      value = k;
+    }
+    order.resize(sizes[layer]);
+    std::iota(order.begin(), order.end(), 0);
+    if (value >= 0) std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return q(value, a) < q(value, b); });
+    for (int b = 0; b < sizes[layer + 1]; ++b) {
+      const double* to = found.q[layer + 1].col(b).data();
+      auto at = order.begin();
+      if (value >= 0) {
+        at = std::lower_bound(order.begin(), order.end(), to[value] - options.max_joint_step,
+                              [&](int a, double least) { return q(value, a) < least; });
+      }
+      for (; at != order.end() && !(value >= 0 && q(value, *at) > to[value] + options.max_joint_step); ++at) {
+        const double* from = q.col(*at).data();
         double squared = 0;
         bool jumps = false;
-        for (Eigen::Index k = 0; k < found.q[layer].rows() && !jumps; ++k) {
+        for (Eigen::Index k = 0; k < q.rows() && !jumps; ++k) {
           double move = to[k] - from[k];
           if (wraps[k]) move = detail::shortest_turn(move);
           jumps = std::abs(move) > options.max_joint_step;
           squared += move * move;
         }
-        if (!jumps) {
-          graph.edge(layer, a, b) = motion * std::sqrt(squared) + force * found.manipulability[layer + 1](b);
-        }
+        if (!jumps) graph.add_edge(layer, *at, b, motion * std::sqrt(squared) + force * found.manipulability[layer + 1](b));
       }
     }
   }
   return graph;
 }
 
-bool ObjectPathEvaluator::Impl::edge_is_allowed(std::size_t layer, const VectorXd& from, const VectorXd& to,
-                                                const Pose& T_hand_object) {
-  const VectorXd end = from + step(from, to);
-  const Pose T = group->fk((from + end) / 2) * T_hand_object;
-  const Pose wanted = half_way(problem.T_world_object[layer], problem.T_world_object[layer + 1]);
-  if ((T.translation() - wanted.translation()).norm() > options.position_tolerance) return false;
-  if (rotation_distance(T, wanted) > options.rotation_tolerance) return false;
-  return !options.check_edges || checker->edge_is_free(from, end, edge);
+/// The object, half way between two poses.
+bool ObjectPathEvaluator::Impl::stays_near(std::size_t layer, const VectorXd& from, const VectorXd& to,
+                                           const Pose& T_hand_object) const {
+  const Pose T = group->fk(from + step(from, to) / 2) * T_hand_object;
+  const Pose& wanted = half_way_poses[layer];
+  return (T.translation() - wanted.translation()).norm() <= options.position_tolerance &&
+         rotation_distance(T, wanted) <= options.rotation_tolerance;
 }
 
 void ObjectPathEvaluator::Impl::bend(const Grasp& grasp, ObjectPathResult& result) const {
@@ -253,6 +250,9 @@ ObjectPathEvaluator::ObjectPathEvaluator(const ObjectPathProblem& problem, const
   problem.check();
   options.check();
   impl_->edge.joint_step = options.edge_step;
+  for (std::size_t i = 0; i + 1 < problem.T_world_object.size(); ++i) {
+    impl_->half_way_poses.push_back(half_way(problem.T_world_object[i], problem.T_world_object[i + 1]));
+  }
   if (!problem.frame) {
     require(options.max_sag == 0, "max_sag", options.max_sag, "needs the problem's frame, which says how it bends");
     return;
@@ -280,6 +280,7 @@ ObjectPathResult ObjectPathEvaluator::evaluate(const Grasp& grasp) {
   if (own.problem.frame) beam_support(grasp);
   own.checker = &own.held.hold(grasp);
   own.group = &own.held.group();
+  own.solver = &own.solvers.try_emplace(own.group, *own.group, own.options).first->second;
   Poses T_world_hand;
   for (const Pose& T : own.problem.T_world_object) T_world_hand.push_back(T * grasp.T_object_hand);
   ObjectPathResult result;
@@ -293,20 +294,28 @@ ObjectPathResult ObjectPathEvaluator::evaluate(const Grasp& grasp) {
   };
   const bool limited = own.stress_limited || own.options.max_sag > 0;
   if (limited) own.bend(grasp, result);
-  const bool unreachable = violated();
-  if (unreachable || own.options.single_configuration) {
-    if (unreachable) {
-      own.count_violations(found, result);
-    } else {
-      own.keep_nearest(found, result);
-    }
-    if (violated()) return result;
+  if (violated()) {
+    own.count_violations(found, result);
+    violated();
+    return result;
   }
   ConfigurationGraph graph = own.graph(found);
   const Pose T_hand_object = grasp.T_object_hand.inverse();
+  const auto stays_near = [&](std::size_t i, int a, int b) {
+    return own.stays_near(i, found.q[i].col(a), found.q[i + 1].col(b), T_hand_object);
+  };
+  // Neighbours on a grid often leave the path half way: looked at on the way, not one path after the other.
+  const ConfigurationGraph::Check check{
+      [&](std::size_t i, int vertex) { return own.is_free(found, i, vertex, result); },
+      [&](std::size_t i, int a, int b) {
+        const bool near = stays_near(i, a, b);
+        result.refused_edges += !near;
+        return near;
+      }};
+  const bool sampled = own.solver->sampled();
   std::vector<std::map<std::pair<int, int>, bool>> checked(T_world_hand.size());
   for (;;) {
-    const ConfigurationGraph::Path path = graph.cheapest();
+    const ConfigurationGraph::Path path = graph.cheapest(sampled ? &check : nullptr);
     if (path.vertices.empty()) break;
     bool stands = true;
     for (std::size_t i = 0; i < path.vertices.size(); ++i) {
@@ -316,10 +325,12 @@ ObjectPathResult ObjectPathEvaluator::evaluate(const Grasp& grasp) {
     }
     for (std::size_t i = 0; stands && i + 1 < path.vertices.size(); ++i) {
       const std::pair<int, int> ends(path.vertices[i], path.vertices[i + 1]);
-      if (checked[i].count(ends)) continue;
-      checked[i][ends] = true;
-      if (own.edge_is_allowed(i, found.q[i].col(ends.first), found.q[i + 1].col(ends.second), T_hand_object)) continue;
-      graph.edge(i, ends.first, ends.second) = kInfinity;
+      if (!checked[i].emplace(ends, true).second) continue;
+      const VectorXd from = found.q[i].col(ends.first), to = found.q[i + 1].col(ends.second);
+      if ((sampled || stays_near(i, ends.first, ends.second)) &&
+          (!own.options.check_edges || own.checker->way_is_free(from, from + own.step(from, to), own.edge)))
+        continue;
+      graph.remove_edge(i, ends.first, ends.second);
       ++result.refused_edges;
       stands = false;
     }

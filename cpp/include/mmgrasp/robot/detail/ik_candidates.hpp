@@ -1,8 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <vector>
 
+#include "mmgrasp/core/export.hpp"
 #include "mmgrasp/robot/detail/ik_closed_form.hpp"
 #include "mmgrasp/robot/ik.hpp"
 
@@ -15,6 +17,40 @@ struct Candidates {
   int without = 0;           ///< Sampled values (or the one search) without any branch.
   bool free = false;         ///< Singular: a joint could take any value, of which one was kept.
   std::vector<Eigen::VectorXd> q;
+};
+
+/// The closed form of one group, prepared for many poses.
+class MMGRASP_EXPORT ClosedFormSolver {
+ public:
+  /// `values`: of the redundant joint, where there is one.
+  ClosedFormSolver(const JointGroup& group, int values);
+
+  bool known_form() const { return known_form_; }
+  int redundant_joint() const { return locked_; }
+
+  /// A branch, polished, each angle in the turn nearest to the middle of its limits, and the Jacobian there.
+  using Use = std::function<void(const Eigen::VectorXd& q, const Matrix6Xd& J)>;
+  struct Counts {
+    int without = 0;    ///< Sampled values (or the one search) without any branch.
+    int far = 0;        ///< Branches farther outside the limits than asked for, which were not polished.
+    bool free = false;  ///< Singular: a joint could take any value, of which one was kept.
+  };
+  /// Every branch that is not outside its limits by more than `outside` [rad] before it is polished. Not thread-safe.
+  Counts solve(const Pose& T_world_tip, double outside, const Use& use);
+
+ private:
+  void turn_inside(Eigen::VectorXd& q) const;
+  bool known(std::size_t count) const;
+
+  JointGroup group_;
+  Screws screws_;
+  ClosedForm form_;
+  bool known_form_ = false;
+  int locked_ = -1, values_ = 1;
+  double lower_ = 0, cell_ = 0;  ///< Of the locked joint's values.
+  Eigen::VectorXd middle_, q_;
+  std::vector<Eigen::VectorXd> kept_;  ///< Of one locked value; grows and is used again.
+  IkWorkspace workspace_;
 };
 
 /// Whole turns are chosen so that each value is nearest to the middle of its limits. `values`: of the redundant joint.

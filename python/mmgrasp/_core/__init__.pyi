@@ -5441,7 +5441,7 @@ class ObjectPathEvaluator:
     """
     Costs many grasps along one path: prepared once. Not for several threads at a time.
     """
-    def __init__(self, problem: ObjectPathProblem, *, motion_weight: float = 0.587, deflection_weight: float = 0.089, manipulability_weight: float = 0.324, motion_scale: float = 1.0, deflection_scale: float = 0.001, manipulability_scale: float = 1.0, max_joint_step: float = 0.5, position_tolerance: float = 0.01, rotation_tolerance: float = 0.05, edge_step: float = 0.02, check_edges: bool = True, single_configuration: bool = False, all_turns: bool = True, redundant_values: int = 0, gravity: float = 9.81, max_sag: float = 0.0) -> None:
+    def __init__(self, problem: ObjectPathProblem, *, motion_weight: float = 0.587, deflection_weight: float = 0.089, manipulability_weight: float = 0.324, motion_scale: float = 1.0, deflection_scale: float = 0.001, manipulability_scale: float = 1.0, max_joint_step: float = 0.5, position_tolerance: float = 0.01, rotation_tolerance: float = 0.05, edge_step: float = 0.02, check_edges: bool = True, single_configuration: bool = False, all_turns: bool = True, redundant_values: int = 0, base_spacing: float = 0.2, base_headings: int = 4, gravity: float = 9.81, max_sag: float = 0.0) -> None:
         """
         Prepares robot, world and object.
         
@@ -5459,7 +5459,9 @@ class ObjectPathEvaluator:
             check_edges: bool = True  # check motions between poses for collisions
             single_configuration: bool = False  # one arm configuration a pose (P2's single IK)
             all_turns: bool = True  # joints that may turn more than once come in every turn
-            redundant_values: int = 0  # samples of a seventh joint; 0: chosen
+            redundant_values: int = 0  # samples of a seventh joint, evenly over its range; 0: 24
+            base_spacing: float = 0.2  # grid of the places where a moving base may stand [m]
+            base_headings: int = 4  # headings of the base at each place, evenly over a turn
             gravity: float = 9.81  # along the world's -z [m/s2]
             max_sag: float = 0.0  # largest displacement allowed at any pose [m]; 0: any
         """
@@ -6186,7 +6188,7 @@ def fit_primitives(mesh: Mesh, labels: numpy.typing.ArrayLike) -> list[FittedPri
     MeshSegmentation.labels. Inner walls are never offered for grasping, nor are sides of a box with nothing on them. Raises
     InvalidInput when there is not one label >= 0 a face.
     """
-def follow_object_path(problem: ObjectPathProblem, grasp: Grasp, *, motion_weight: float = 0.587, deflection_weight: float = 0.089, manipulability_weight: float = 0.324, motion_scale: float = 1.0, deflection_scale: float = 0.001, manipulability_scale: float = 1.0, max_joint_step: float = 0.5, position_tolerance: float = 0.01, rotation_tolerance: float = 0.05, edge_step: float = 0.02, check_edges: bool = True, single_configuration: bool = False, all_turns: bool = True, redundant_values: int = 0, gravity: float = 9.81, max_sag: float = 0.0) -> ObjectPathResult:
+def follow_object_path(problem: ObjectPathProblem, grasp: Grasp, *, motion_weight: float = 0.587, deflection_weight: float = 0.089, manipulability_weight: float = 0.324, motion_scale: float = 1.0, deflection_scale: float = 0.001, manipulability_scale: float = 1.0, max_joint_step: float = 0.5, position_tolerance: float = 0.01, rotation_tolerance: float = 0.05, edge_step: float = 0.02, check_edges: bool = True, single_configuration: bool = False, all_turns: bool = True, redundant_values: int = 0, base_spacing: float = 0.2, base_headings: int = 4, gravity: float = 9.81, max_sag: float = 0.0) -> ObjectPathResult:
     """
     The cheapest motion of the arm that carries the object through all poses with one grasp, over all arm
     configurations (P2 3.3.3, Algorithm 3.1), motions between poses checked finely.
@@ -6205,7 +6207,9 @@ def follow_object_path(problem: ObjectPathProblem, grasp: Grasp, *, motion_weigh
         check_edges: bool = True  # check motions between poses for collisions
         single_configuration: bool = False  # one arm configuration a pose (P2's single IK)
         all_turns: bool = True  # joints that may turn more than once come in every turn
-        redundant_values: int = 0  # samples of a seventh joint; 0: chosen
+        redundant_values: int = 0  # samples of a seventh joint, evenly over its range; 0: 24
+        base_spacing: float = 0.2  # grid of the places where a moving base may stand [m]
+        base_headings: int = 4  # headings of the base at each place, evenly over a turn
         gravity: float = 9.81  # along the world's -z [m/s2]
         max_sag: float = 0.0  # largest displacement allowed at any pose [m]; 0: any
     """
@@ -6334,7 +6338,7 @@ def optimised_order(grid: BaseGrid, cells: collections.abc.Sequence[collections.
     """
     The order in which parts are best picked when the trays of each group share a stop, never worse than `order`. `cells` is [tray][part], bitmaps (headings, ny, nx).
     """
-def optimize_grasp(problem: ObjectPathProblem, pipe: Pipe, *, gripper: Hand | None = None, algorithm: str = 'bees', neighbourhood_kind: str = 'connected_sections', progress: collections.abc.Callable[[str, float], typing.Any] | None = None, motion_weight: float = 0.587, deflection_weight: float = 0.089, manipulability_weight: float = 0.324, motion_scale: float = 1.0, deflection_scale: float = 0.001, manipulability_scale: float = 1.0, max_joint_step: float = 0.5, position_tolerance: float = 0.01, rotation_tolerance: float = 0.05, edge_step: float = 0.02, check_edges: bool = True, single_configuration: bool = False, all_turns: bool = True, redundant_values: int = 0, gravity: float = 9.81, max_sag: float = 0.0, population: int = 34, max_evaluations: int = 1530, target: float = ..., seed: int = 1, elite_sites: int = 1, best_sites: int = 4, elite_recruits: int = 10, recruits: int = 3, stagnation_limit: int = 10, neighbourhood: float = 0.2, shrinking: float = 0.8, mutation_rate: float = 0.3, mutation_size: float = 0.25, connectivity: float = 0.5, inertia: float = 0.7, acceleration: float = 2.0, max_gap: float = 0.001, max_boxes: int = 1000000, time_limit: float = 600.0, threads: int = 0) -> GraspOptimum:
+def optimize_grasp(problem: ObjectPathProblem, pipe: Pipe, *, gripper: Hand | None = None, algorithm: str = 'bees', neighbourhood_kind: str = 'connected_sections', progress: collections.abc.Callable[[str, float], typing.Any] | None = None, motion_weight: float = 0.587, deflection_weight: float = 0.089, manipulability_weight: float = 0.324, motion_scale: float = 1.0, deflection_scale: float = 0.001, manipulability_scale: float = 1.0, max_joint_step: float = 0.5, position_tolerance: float = 0.01, rotation_tolerance: float = 0.05, edge_step: float = 0.02, check_edges: bool = True, single_configuration: bool = False, all_turns: bool = True, redundant_values: int = 0, base_spacing: float = 0.2, base_headings: int = 4, gravity: float = 9.81, max_sag: float = 0.0, population: int = 34, max_evaluations: int = 1530, target: float = ..., seed: int = 1, elite_sites: int = 1, best_sites: int = 4, elite_recruits: int = 10, recruits: int = 3, stagnation_limit: int = 10, neighbourhood: float = 0.2, shrinking: float = 0.8, mutation_rate: float = 0.3, mutation_size: float = 0.25, connectivity: float = 0.5, inertia: float = 0.7, acceleration: float = 2.0, max_gap: float = 0.001, max_boxes: int = 1000000, time_limit: float = 600.0, threads: int = 0) -> GraspOptimum:
     """
     The grasp of a pipe with the least cost along the path, by a population search: bees, ga or pso (P2 3.4),
     or with its optimum proven: branch_and_bound.
@@ -6355,7 +6359,9 @@ def optimize_grasp(problem: ObjectPathProblem, pipe: Pipe, *, gripper: Hand | No
         check_edges: bool = True  # check motions between poses for collisions
         single_configuration: bool = False  # one arm configuration a pose (P2's single IK)
         all_turns: bool = True  # joints that may turn more than once come in every turn
-        redundant_values: int = 0  # samples of a seventh joint; 0: chosen
+        redundant_values: int = 0  # samples of a seventh joint, evenly over its range; 0: 24
+        base_spacing: float = 0.2  # grid of the places where a moving base may stand [m]
+        base_headings: int = 4  # headings of the base at each place, evenly over a turn
         gravity: float = 9.81  # along the world's -z [m/s2]
         max_sag: float = 0.0  # largest displacement allowed at any pose [m]; 0: any
         population: int = 34  # points a round

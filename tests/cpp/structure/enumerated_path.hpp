@@ -31,7 +31,8 @@ struct Enumerated {
              const Configurations& configurations) {
     World world = problem.world;
     world.add("pipe", WorldObject{problem.object, problem.T_world_object[0]});
-    world.attach("pipe", problem.group.robot().links()[problem.group.tip_link()].name, grasp.T_object_hand.inverse(), problem.touch_links);
+    world.attach("pipe", problem.group.robot().links()[problem.group.tip_link()].name, grasp.T_object_hand.inverse(),
+                 problem.touch_links);
     CollisionChecker checker(problem.group, world);
     std::vector<std::vector<Eigen::VectorXd>> layers;
     for (const Pose& T : problem.T_world_object) {
@@ -47,28 +48,28 @@ struct Enumerated {
     for (std::size_t i = 1; i < layers.size(); ++i) {
       sag += held.largest_displacement(gravity_in_object(problem.T_world_object[i])).value;
     }
-    const std::function<void(std::size_t, const Eigen::VectorXd&, double)> go_on = [&](std::size_t i, const Eigen::VectorXd& last,
-                                                                                double so_far) {
-      if (i == layers.size()) {
-        ++sequences;
-        cost = std::min(cost, so_far + options.deflection_weight * sag / options.deflection_scale);
-        return;
-      }
-      for (const Eigen::VectorXd& q : layers[i]) {
-        if ((q - last).cwiseAbs().maxCoeff() > options.max_joint_step) continue;
-        const Pose middle = problem.group.fk((q + last) / 2) * grasp.T_object_hand.inverse();
-        const Pose &a = problem.T_world_object[i - 1], &b = problem.T_world_object[i];
-        const Eigen::Quaterniond half = Eigen::Quaterniond(a.linear()).slerp(0.5, Eigen::Quaterniond(b.linear()));
-        if ((middle.translation() - (a.translation() + b.translation()) / 2).norm() > options.position_tolerance)
-          continue;
-        if (half.angularDistance(Eigen::Quaterniond(middle.linear())) > options.rotation_tolerance) continue;
-        if (!checker.edge_is_free(last, q, options.edge_step)) continue;
-        const Vector6d motion = pose_difference(a * grasp.T_object_hand, b * grasp.T_object_hand);
-        go_on(i + 1, q,
-              so_far + options.motion_weight * (q - last).norm() +
-                  options.manipulability_weight * force_manipulability(problem.group, q, motion));
-      }
-    };
+    const std::function<void(std::size_t, const Eigen::VectorXd&, double)> go_on =
+        [&](std::size_t i, const Eigen::VectorXd& last, double so_far) {
+          if (i == layers.size()) {
+            ++sequences;
+            cost = std::min(cost, so_far + options.deflection_weight * sag / options.deflection_scale);
+            return;
+          }
+          for (const Eigen::VectorXd& q : layers[i]) {
+            if ((q - last).cwiseAbs().maxCoeff() > options.max_joint_step) continue;
+            const Pose middle = problem.group.fk((q + last) / 2) * grasp.T_object_hand.inverse();
+            const Pose &a = problem.T_world_object[i - 1], &b = problem.T_world_object[i];
+            const Eigen::Quaterniond half = Eigen::Quaterniond(a.linear()).slerp(0.5, Eigen::Quaterniond(b.linear()));
+            if ((middle.translation() - (a.translation() + b.translation()) / 2).norm() > options.position_tolerance)
+              continue;
+            if (half.angularDistance(Eigen::Quaterniond(middle.linear())) > options.rotation_tolerance) continue;
+            if (!checker.edge_is_free(last, q, options.edge_step)) continue;
+            const Vector6d motion = pose_difference(a * grasp.T_object_hand, b * grasp.T_object_hand);
+            go_on(i + 1, q,
+                  so_far + options.motion_weight * (q - last).norm() +
+                      options.manipulability_weight * force_manipulability(problem.group, q, motion));
+          }
+        };
     for (const Eigen::VectorXd& q : layers[0]) go_on(1, q, 0);
   }
 };

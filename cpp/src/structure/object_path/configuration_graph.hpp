@@ -5,12 +5,14 @@
 #include <utility>
 #include <vector>
 
+#include "mmgrasp/core/export.hpp"
+
 namespace mmgrasp::detail {
 
 /// Configurations in layers, one a waypoint, joined from layer to layer (P2 figure 3.8). Vertices and edges can be
 /// taken out; the cheapest path from any vertex of the first layer to any of the last is found by dynamic programming.
 /// Only edges that exist take room.
-class ConfigurationGraph {
+class MMGRASP_EXPORT ConfigurationGraph {
  public:
   /// A graph without edges, with so many vertices in each layer.
   explicit ConfigurationGraph(const std::vector<int>& sizes);

@@ -174,7 +174,8 @@ ConfigurationGraph ObjectPathEvaluator::Impl::graph(const Configurations& found)
     }
     order.resize(sizes[layer]);
     std::iota(order.begin(), order.end(), 0);
-    if (value >= 0) std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return q(value, a) < q(value, b); });
+    if (value >= 0)
+      std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return q(value, a) < q(value, b); });
     for (int b = 0; b < sizes[layer + 1]; ++b) {
       const double* to = found.q[layer + 1].col(b).data();
       auto at = order.begin();
@@ -192,7 +193,8 @@ ConfigurationGraph ObjectPathEvaluator::Impl::graph(const Configurations& found)
           jumps = std::abs(move) > options.max_joint_step;
           squared += move * move;
         }
-        if (!jumps) graph.add_edge(layer, *at, b, motion * std::sqrt(squared) + force * found.manipulability[layer + 1](b));
+        if (!jumps)
+          graph.add_edge(layer, *at, b, motion * std::sqrt(squared) + force * found.manipulability[layer + 1](b));
       }
     }
   }

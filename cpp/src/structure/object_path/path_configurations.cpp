@@ -159,7 +159,8 @@ PathConfigurations::Layer PathConfigurations::single(const Pose& T_world_hand, c
   values_.clear();
   forces_.clear();
   rejections_ = {};
-  const IkOptions options;
+  IkOptions options;
+  options.position_tolerance = options.rotation_tolerance = 1e-9;  // as exact as branches are
   IkWorkspace workspace;
   IkStarts starts(group_, T_world_hand, options.seed);
   VectorXd q = seed;

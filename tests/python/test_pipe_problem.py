@@ -22,7 +22,7 @@ from mmgrasp import _core
 from mmgrasp._files import ASSETS
 from mmgrasp.cli import main
 from mmgrasp.grasping import BeamSupport, SupportedFrame, optimize_grasp
-from mmgrasp.pipes import PipePlan, arc_poses, line_poses, load_pipe_problem, plan_pipe
+from mmgrasp.pipes import PipePlan, arc_poses, line_poses, load_pipe_problem, plan_pipe, planning
 from mmgrasp.pipes.path_section import rotation_about, rotation_vector
 from mmgrasp.pipes.planning import _dense
 
@@ -395,3 +395,25 @@ def test_limits_are_refused_without_a_frame() -> None:
     )
     with pytest.raises(mg.InvalidInput, match="max_sag"):
         optimize_grasp(task, problem.pipe, max_sag=1e-3, max_evaluations=5)
+
+
+def test_a_grasp_whose_motion_cannot_be_timed_gives_way_to_the_next(
+    plan: PipePlan, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    true_motion = planning.timed_motion
+    refused = [plan.optimum.feasible[0].grasp.T_object_hand]
+
+    def timed(problem: Any, grasp: Any, *rest: Any) -> Any:
+        if any(np.array_equal(grasp.T_object_hand, T) for T in refused):
+            raise planning.UntimedError("no time")
+        return true_motion(problem, grasp, *rest)
+
+    monkeypatch.setattr(planning, "timed_motion", timed)
+    second = planning.plan_pipe(plan.problem)
+    assert second.untimed >= 1 and second.grasp is not None and second.path is not None and plan.path is not None
+    assert not np.array_equal(second.grasp.T_object_hand, refused[0])
+    assert second.path.cost >= plan.path.cost
+    assert len(second.sags) == len(plan.sags)
+    refused += [f.grasp.T_object_hand for f in plan.optimum.feasible]
+    with pytest.raises(planning.UntimedError, match="grasps tried"):
+        planning.plan_pipe(plan.problem)

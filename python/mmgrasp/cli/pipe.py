@@ -55,7 +55,7 @@ def run_pipe(arguments: argparse.Namespace, console: Console) -> int:
 
 def _print(plan: PipePlan, console: Console) -> None:
     optimum = plan.optimum
-    if plan.grasp is None or plan.trajectory is None:
+    if plan.grasp is None or plan.path is None or plan.trajectory is None:
         console.print(f"no grasp: {plan.outcome.name.replace('_', ' ')}", style="bold red", markup=False)
         console.print(f"- {plan.obstruction}", markup=False, soft_wrap=True)
         console.print(f"- {plan.proof}", markup=False, soft_wrap=True)
@@ -66,11 +66,11 @@ def _print(plan: PipePlan, console: Console) -> None:
     stress = max((row.stress for row in plan.sags if row.stress is not None), default=None)
     bears = "" if stress is None else f", bears up to {1e-6 * stress:.1f} MPa"
     lines = [
-        f"hold section {place['section']} at {place['length']:.3f} m, {place['angle']:.2f} rad{flip}: cost {optimum.path.cost:.3f}",
+        f"hold section {place['section']} at {place['length']:.3f} m, {place['angle']:.2f} rad{flip}: cost {plan.path.cost:.3f}",
         f"- {plan.proof}",
         f"- {optimum.evaluations} grasps tried, {len(optimum.feasible)} can follow the path, {len(optimum.front)} on the Pareto front",
         f"- the pipe sags by up to {1e3 * worst.sag:.2f} mm{bears}",
-        f"- joint motion {optimum.path.joint_motion:.2f} rad in {plan.trajectory.duration:.2f} s, within {1e3 * plan.path_error[0]:.2f} mm of the path",
+        f"- joint motion {plan.path.joint_motion:.2f} rad in {plan.trajectory.duration:.2f} s, within {1e3 * plan.path_error[0]:.2f} mm of the path",
     ]
     for line in lines:
         console.print(line, markup=False, soft_wrap=True)

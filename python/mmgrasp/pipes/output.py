@@ -49,12 +49,12 @@ def result_to_dict(plan: PipePlan) -> dict[str, Any]:
         "format": "mmgrasp-pipe-result",
         "mmgrasp": _core.__version__,
         "problem": {"name": problem.name, "source": problem.source, "poses": len(problem.T_world_pipe)},
-        "outcome": optimum.outcome.name,
+        "outcome": plan.outcome.name,
         "proof": plan.proof,
         "evaluations": optimum.evaluations,
         "feasible": len(optimum.feasible),
         "lower_bound": optimum.lower_bound if np.isfinite(optimum.lower_bound) else None,
-        "gap": optimum.gap,
+        "gap": plan.gap,
         "preferences": {
             "source": problem.preferences.source,
             "consistency_ratio": problem.preferences.consistency_ratio,
@@ -69,11 +69,11 @@ def result_to_dict(plan: PipePlan) -> dict[str, Any]:
             grasp_to_dict(grasp) | _costs(found) for grasp, found in zip(problem.compare, plan.compared, strict=True)
         ],
     }
-    if optimum.grasp is None or plan.trajectory is None:
+    if plan.grasp is None or plan.path is None or plan.trajectory is None:
         return out
     return out | {
-        "grasp": grasp_to_dict(optimum.grasp) | {"T_object_hand": optimum.grasp.T_object_hand.tolist()},
-        **_costs(optimum.path),
+        "grasp": grasp_to_dict(plan.grasp) | {"T_object_hand": plan.grasp.T_object_hand.tolist()},
+        **_costs(plan.path),
         "duration": plan.trajectory.duration,
         "path_error": {"position": plan.path_error[0], "rotation": plan.path_error[1]},
         "largest_sag": max(row.sag for row in plan.sags),

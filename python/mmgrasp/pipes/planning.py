@@ -26,7 +26,12 @@ from .problem import PipeProblem
 POSITION_STEP, ROTATION_STEP = 0.01, 0.05  # of the pipe between two poses that the arm is computed for [m], [rad]
 CORNER = 0.002  # the timed motion passes this near to each of them, in every joint [rad or m]
 STOP = 1e-4  # or, where that leaves the path, this near [rad or m]
+TIMED_GRASPS = 20  # the cheapest grasps, of which one must have a timed motion
 CHECK_STEP = 0.005  # no joint moves more between two checks of the timed motion [rad or m]
+
+
+class UntimedError(Error):
+    """A grasp's motion through its poses cannot be timed."""
 
 
 @dataclass(frozen=True)
@@ -52,6 +57,12 @@ class PipePlan:
 
     problem: PipeProblem
     optimum: GraspOptimum
+    grasp: Grasp | None = None
+    """The best grasp with which the motion can be timed, or None."""
+    path: ObjectPathResult | None = None
+    """Its configurations at the poses and its costs."""
+    untimed: int = 0
+    """Cheaper grasps whose timed motion leaves the path or collides."""
     trajectory: JointTrajectory | None = None
     """Along the path, checked for collisions at 0.005 rad."""
     waypoint_times: np.ndarray = field(default_factory=lambda: np.zeros(0))
@@ -63,14 +74,17 @@ class PipePlan:
     """What the grasps of the file's `compare` cost."""
 
     @property
-    def grasp(self) -> Grasp | None:
-        """The best grasp, or None."""
-        return self.optimum.grasp
+    def outcome(self) -> Outcome:
+        """Of the search, or why there is no motion; no more than approximate where a cheaper grasp could not be timed."""
+        found = self.optimum.outcome
+        return Outcome.approximate if self.untimed > 0 and found == Outcome.solved else found
 
     @property
-    def outcome(self) -> Outcome:
-        """Of the search, or why there is no motion."""
-        return self.optimum.outcome
+    def gap(self) -> float:
+        """How much cheaper another grasp could be at most, as a share of the cost."""
+        if self.path is None or self.path.cost <= 0:
+            return self.optimum.gap
+        return max(0.0, 1 - self.optimum.lower_bound / self.path.cost)
 
     @property
     def proof(self) -> str:
@@ -79,7 +93,7 @@ class PipePlan:
             return "proven: no grasp can do it" if self.outcome == Outcome.infeasible else "no proof that there is none"
         if self.optimum.lower_bound <= 0:
             return "the best of the search, not proven (algorithm: branch_and_bound proves it)"
-        return f"no grasp is more than {100 * self.optimum.gap:.2g} % cheaper, which is proven"
+        return f"no grasp is more than {100 * self.gap:.2g} % cheaper, which is proven"
 
     @property
     def obstruction(self) -> str:
@@ -109,7 +123,7 @@ class PipePlan:
 
 
 def plan_pipe(problem: PipeProblem, progress: Progress = None) -> PipePlan:
-    """Searches the best grasp, times the arm's motion with it, checks that motion again, and says how the pipe bends at every pose."""
+    """Searches the best grasp, times the arm's motion with it (or with the next best, where it cannot be), checks that motion again, and says how the pipe bends at every pose."""
     task = problem.object_path_problem()
     optimum = optimize_grasp(
         task,
@@ -122,9 +136,23 @@ def plan_pipe(problem: PipeProblem, progress: Progress = None) -> PipePlan:
     plan.compared = [follow_object_path(task, grasp, **problem.all_path_options) for grasp in problem.compare]
     if optimum.grasp is None:
         return plan
-    plan.trajectory, plan.path_error = timed_motion(problem, optimum.grasp, optimum.path.path, progress)
-    plan.waypoint_times = _passing_times(plan.trajectory, optimum.path.path)
-    held = SupportedFrame(problem.frame, [optimum.grasp])
+    reason: Error = UntimedError("no grasp passes the finer check")
+    for i, candidate in enumerate(optimum.feasible[:TIMED_GRASPS]):
+        path = optimum.path if i == 0 else follow_object_path(task, candidate.grasp, **problem.all_path_options)
+        if path.path is None:  # refused by the finer check
+            continue
+        try:
+            plan.trajectory, plan.path_error = timed_motion(problem, candidate.grasp, path.path, progress)
+        except UntimedError as error:
+            plan.untimed += 1
+            reason = error
+            continue
+        plan.grasp, plan.path = candidate.grasp, path
+        break
+    if plan.grasp is None or plan.trajectory is None or plan.path is None:
+        raise UntimedError(f"{reason} ({plan.untimed} grasps tried)")
+    plan.waypoint_times = _passing_times(plan.trajectory, plan.path.path)
+    held = SupportedFrame(problem.frame, [plan.grasp])
     for T, time in zip(problem.T_world_pipe, plan.waypoint_times, strict=True):
         state = held.state(gravity_in_pipe(problem, T))
         plan.sags.append(
@@ -152,7 +180,7 @@ def timed_motion(
 ) -> tuple[JointTrajectory, tuple[float, float]]:
     """The motion through the waypoints, along the pipe's path between them where the arm can, else straight in joint space.
 
-    Checked for collisions and against the path's tolerances; raises Error when neither passes.
+    Checked for collisions and against the path's tolerances; raises UntimedError when neither passes.
     """
     arm, world = problem.holding(grasp)
     checker = CollisionChecker(problem.robot, world, group=arm)
@@ -174,7 +202,7 @@ def timed_motion(
         error = _path_error(problem, grasp, trajectory, waypoints)
         if error[0] <= allowed[0] and error[1] <= allowed[1] and _is_free(checker, trajectory):
             return trajectory, error
-    raise Error(
+    raise UntimedError(
         "the timed motion leaves the pipe's path or collides, which the motion through its poses does not: give more poses"
     )
 

@@ -14,6 +14,8 @@ from .lookup import PATIENT, Answer, ask, call, find, get, threads
 from .results import rejections, shared_cells, stop, timed
 from .setups import asset, group, pose, tucked
 
+OPEN = {"left_gripper_finger_joint": 0.05, "right_gripper_finger_joint": 0.05}
+
 
 @cache
 def scenario(name: str, trays: int, targets: int) -> Any:
@@ -134,7 +136,7 @@ def drive_by() -> Answer:
 @call
 def drive_by_past_a_table() -> Answer:
     """A bottle is taken in passing; the robot keeps clear of the table and of itself."""
-    arm = group("fetchlike", "diff_drive", with_base=True).with_reference({"head_tilt_joint": 0.4})
+    arm = group("fetchlike", "diff_drive", with_base=True).with_reference({"head_tilt_joint": 0.4, **OPEN})
     scene = find("World")()
     scene.add_box("table", [1.2, 0.5, 0.7], pose(2.0, -0.9, 0.35))
     scene.add_cylinder("bottle", 0.028, 0.16, pose(2.0, -0.8, 0.781))

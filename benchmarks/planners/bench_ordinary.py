@@ -66,7 +66,7 @@ def baseline(
     python: str, script: str, robot: dict, problems: list[MotionProblem], seeds: int
 ) -> list[tuple[float, np.ndarray | None]]:
     """The same from a program in the baselines' environment; it answers one line for each run."""
-    asked = {
+    query = {
         "robot": robot,
         "seeds": seeds,
         "time_limit": TIME_LIMIT,
@@ -83,7 +83,7 @@ def baseline(
         ],
     }
     done = subprocess.run(
-        [python, HERE / script], input=json.dumps(asked), stdout=subprocess.PIPE, text=True, check=True
+        [python, HERE / script], input=json.dumps(query), stdout=subprocess.PIPE, text=True, check=True
     )
     answers = [json.loads(line) for line in done.stdout.splitlines() if line.startswith("{")]
     return [(a["seconds"], np.array(a["path"]) if a["path"] else None) for a in answers]
@@ -129,7 +129,7 @@ def main() -> None:
         )
     ]
     files = {"urdf": str(folder / "panda.urdf"), "srdf": str(folder / "panda.srdf")}
-    asked = [problem for problem in problems for _ in range(arguments.seeds)]
+    query = [problem for problem in problems for _ in range(arguments.seeds)]
     programs = {
         ("mmgrasp", "RRT-Connect, edges at 5 mm of any link point, shortened, looked at again"): ours(
             robot, problems, arguments.seeds
@@ -142,7 +142,7 @@ def main() -> None:
         ),
     }
     for (who, settings), runs in programs.items():
-        print(row(who, settings, robot, [(p, *run) for p, run in zip(asked, runs, strict=True)]), flush=True)
+        print(row(who, settings, robot, [(p, *run) for p, run in zip(query, runs, strict=True)]), flush=True)
 
 
 if __name__ == "__main__":

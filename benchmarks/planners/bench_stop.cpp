@@ -67,7 +67,7 @@ Call motion(const JointGroup& arm, const std::string& planner) {
   };
 }
 
-ManipulationProblem carry_problem(const JointGroup& arm) {
+ManipulationProblem transfer_problem(const JointGroup& arm) {
   LinkShape bar;
   bar.shape = Box{{0.3, 0.03, 0.03}};
   ManipulationProblem problem{arm, walled(), {bar}, at(0, 0.5, 0.3), at(0, -0.5, 0.3)};
@@ -84,7 +84,7 @@ ManipulationProblem carry_problem(const JointGroup& arm) {
   return problem;
 }
 
-Call carry(const ManipulationProblem& problem, const std::string& planner) {
+Call transfer(const ManipulationProblem& problem, const std::string& planner) {
   return [&problem, planner](const Monitor& monitor) {
     ManipulationOptions options;
     options.planner = planner;
@@ -166,8 +166,8 @@ int main(int argc, char** argv) {
   CollisionChecker checker(arm, walled());
   if (!checker.is_free(beside(kTurn)) || !checker.is_free(beside(-kTurn))) throw Error("start and goal must be free");
   for (const std::string& planner : planner_names()) measure(planner, motion(arm, planner), given);
-  const ManipulationProblem problem = carry_problem(arm);
-  for (const std::string& planner : manipulation_planner_names()) measure(planner, carry(problem, planner), given);
+  const ManipulationProblem problem = transfer_problem(arm);
+  for (const std::string& planner : manipulation_planner_names()) measure(planner, transfer(problem, planner), given);
   measure("plan_cartesian", tool_line(arm), given);
   measure("time_parameterize", timing(arm), given);
 }

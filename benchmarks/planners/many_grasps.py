@@ -38,7 +38,7 @@ import time
 from pathlib import Path
 
 import numpy as np
-from transfer_text import write_carries
+from transfer_text import write_transfers
 
 import mmgrasp as mg
 from mmgrasp.problems.pipe_cells import ROBOTS, PipeCell, pipe_cell
@@ -61,10 +61,10 @@ def ours(planner: str, **settings):
             options["refinements"] = UNLIMITED
         else:
             options["max_iterations"] = UNLIMITED
-        problem, told = cell.problem(grasps), []
+        problem, reported = cell.problem(grasps), []
 
         def improved(_) -> None:
-            told.append(time.process_time() - begin)
+            reported.append(time.process_time() - begin)
             if only_first:
                 raise Enough
 
@@ -72,12 +72,12 @@ def ours(planner: str, **settings):
         try:
             result = mg.plan_manipulation(problem, on_solution=improved, **options)
         except Enough:
-            return {**NONE, "first": told[0]}
+            return {**NONE, "first": reported[0]}
         if result.outcome != mg.Outcome.solved:
             return NONE
         stages = [better.stage for better in result.improvements]
         final = next((stage for stage in reversed(stages) if stage != "shortening"), stages[-1])
-        return {"first": told[0], "cost": result.cost, "stages": [stages[0], final]}
+        return {"first": reported[0], "cost": result.cost, "stages": [stages[0], final]}
 
     return run
 
@@ -142,14 +142,14 @@ def today(cell: PipeCell, grasps: list[mg.Grasp], seed: int, given: argparse.Nam
     begin, ends = time.process_time(), Ends(cell, grasps)
     planning, apart = 0.0, 0.0  # [s] in the other program; on what it is told
     for i in ends.usable():
-        told = time.process_time()
+        before = time.process_time()
         starts, goals = ends[i]
         with tempfile.TemporaryDirectory() as folder:
-            text = Path(folder) / "carries.txt"
-            write_carries(cell, [(grasps[i], start, goals) for start in starts], text)
+            text = Path(folder) / "transfers.txt"
+            write_transfers(cell, [(grasps[i], start, goals) for start in starts], text)
             command = [given.fcl, text, str(seed), str(given.each / len(starts))]
             answer = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
-        apart += time.process_time() - told
+        apart += time.process_time() - before
         planning += answer["seconds"]
         spent = time.process_time() - begin - apart + planning
         if answer["solved"]:
@@ -175,12 +175,12 @@ def all_goals(cell: PipeCell, grasps: list[mg.Grasp], seed: int, given: argparse
 
 
 def informed(cell: PipeCell, grasps: list[mg.Grasp], seed: int, given: argparse.Namespace, only_first: bool) -> dict:
-    begin, ends, told = time.process_time(), Ends(cell, grasps), []
+    begin, ends, reported = time.process_time(), Ends(cell, grasps), []
     usable = list(ends.usable())
     best = math.inf
     for turn, i in enumerate(usable):
         left = given.seconds - (time.process_time() - begin)
-        if left <= 0 or (only_first and told):
+        if left <= 0 or (only_first and reported):
             break
         starts, goals = ends[i]
         found = plan(
@@ -188,9 +188,9 @@ def informed(cell: PipeCell, grasps: list[mg.Grasp], seed: int, given: argparse.
             max_iterations=UNLIMITED, seed=seed,
         )  # fmt: skip
         if found.outcome == mg.Outcome.solved:
-            told.append(time.process_time() - begin)
+            reported.append(time.process_time() - begin)
             best = min(best, found.cost)
-    return {"first": told[0], "cost": best} if best < math.inf else NONE
+    return {"first": reported[0], "cost": best} if best < math.inf else NONE
 
 
 def restarts(cell: PipeCell, grasps: list[mg.Grasp], seed: int, given: argparse.Namespace, only_first: bool) -> dict:

@@ -53,9 +53,9 @@ def configuration(names: list[str], values: dict[str, float]) -> JointConfigurat
 
 
 def main() -> None:
-    asked = json.load(sys.stdin)
-    for problem in asked["problems"]:
-        scene = scene_of(asked["robot"], problem)
+    query = json.load(sys.stdin)
+    for problem in query["problems"]:
+        scene = scene_of(query["robot"], problem)
         group = problem["group"]
         names = list(scene.getJointGroupInfo(group).joint_names)
         start, goal = configuration(names, problem["start"]), configuration(names, problem["goal"])
@@ -65,9 +65,9 @@ def main() -> None:
             max_nodes=1_000_000,
             max_connection_distance=1.0,
             collision_check_step_size=STEP,
-            max_planning_time=asked["time_limit"],
+            max_planning_time=query["time_limit"],
         )
-        for seed in range(1, asked["seeds"] + 1):
+        for seed in range(1, query["seeds"] + 1):
             planner = RRT(scene, options)
             planner.setRngSeed(seed)
             shortcuts = PathShortcutter(scene, PathShortcuttingOptions(group_name=group, max_step_size=STEP, seed=seed))

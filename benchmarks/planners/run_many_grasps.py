@@ -157,8 +157,10 @@ def main() -> None:
     odds = []
     for planner in ("prm_star_mg", "rrt_star_mg"):
         odds += lines_of([BUILD / "benchmarks/bench_many_grasps", "0", planner])
-    told = ", ".join(f"{key} {value}" for key, value in settings["settings"].items() if key not in ("programs", "fcl"))
-    head = f"{os.cpu_count()} cores, {platform.machine()}; {told}."
+    settings_text = ", ".join(
+        f"{key} {value}" for key, value in settings["settings"].items() if key not in ("programs", "fcl")
+    )
+    head = f"{os.cpu_count()} cores, {platform.machine()}; {settings_text}."
     show("many_grasps", "\n\n".join([head, many_table(lines), odds_table(odds)]), given.write)
 
 

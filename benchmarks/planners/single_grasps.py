@@ -23,7 +23,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from tables import markdown, show
 
 
-def carries(cell: PipeCell, grasp: mg.Grasp, seconds: float) -> str:
+def transfers(cell: PipeCell, grasp: mg.Grasp, seconds: float) -> str:
     """ "out of reach", "solved" or "failed"."""
     starts, goals = cell.ends(grasp, 8)
     if len(starts) == 0 or len(goals) == 0:
@@ -76,7 +76,7 @@ def main() -> None:
     lines = []
     for robot, seed, number in itertools.product(given.robots, given.seeds, given.cells):
         cell = pipe_cell(number, seed=seed, robot=robot)
-        outcomes = [carries(cell, grasp, given.seconds) for grasp in cell.grasps(given.grasps)]
+        outcomes = [transfers(cell, grasp, given.seconds) for grasp in cell.grasps(given.grasps)]
         reached = [o for o in outcomes if o != "out of reach"]
         line = {
             "cell": number,

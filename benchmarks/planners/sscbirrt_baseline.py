@@ -63,9 +63,9 @@ def model_of(robot: dict, problem: dict) -> mujoco.MjModel:
 
 
 def main() -> None:
-    asked = json.load(sys.stdin)
-    for problem in asked["problems"]:
-        model = model_of(asked["robot"], problem)
+    query = json.load(sys.stdin)
+    for problem in query["problems"]:
+        model = model_of(query["robot"], problem)
         names = list(problem["goal"])
         arm = Arm(model, names, ee_site="tip")
         data = mujoco.MjData(model)
@@ -73,9 +73,9 @@ def main() -> None:
         for name, value in zip(names, start, strict=True):
             data.joint(name).qpos = value
         mujoco.mj_forward(model, data)
-        config = CBiRRTConfig(timeout=asked["time_limit"])
+        config = CBiRRTConfig(timeout=query["time_limit"])
         plan(model, data, arm, start=start, goal=start, config=config, seed=0)  # the scene is built on its first use
-        for seed in range(1, asked["seeds"] + 1):
+        for seed in range(1, query["seeds"] + 1):
             begin = time.process_time()
             result = plan(model, data, arm, start=start, goal=goal, config=config, seed=seed)
             seconds = time.process_time() - begin

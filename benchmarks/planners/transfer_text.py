@@ -32,11 +32,11 @@ def _scene_lines(world: mg.World) -> list[str]:
     return lines
 
 
-def write_carries(cell: PipeCell, carries: list[tuple[mg.Grasp, np.ndarray, np.ndarray]], file: Path) -> None:
+def write_transfers(cell: PipeCell, transfers: list[tuple[mg.Grasp, np.ndarray, np.ndarray]], file: Path) -> None:
     """`carries`: a grasp, a start (6) and goals (k, 6) each."""
     lines, scene, names = [], _scene_lines(cell.world), cell.arm.names
-    for number, (grasp, start, goals) in enumerate(carries):
-        lines += [_robot_line(cell, grasp, file.parent, number), f"problem carry/{number} {cell.arm.name}"]
+    for number, (grasp, start, goals) in enumerate(transfers):
+        lines += [_robot_line(cell, grasp, file.parent, number), f"problem transfer/{number} {cell.arm.name}"]
         still = cell.gripper.joint_values(grasp.opening)
         lines += [
             f"start {name} {numbers([value])}" for name, value in [*zip(names, start, strict=True), *still.items()]

@@ -1,9 +1,9 @@
 """The same poses in rooms with tables and walls, self-collision too; counted are those for which a sampling planner finds a path.
 
-    python benchmarks/trajopt/bench_obstacles.py [--count 200] [--seeds 1 2 3] [--waypoints 35] [--patience 60] [--verbose]
+    python benchmarks/trajopt/bench_obstacles.py [--count 200] [--seeds 1 2 3] [--waypoints 35] [--time-limit 60] [--verbose]
 
 The sampling planner is RRT-Connect for base and arm together, from the start to the grasp (any of its IK solutions) and on to the
-goal, the base turning on the spot and driving straight; it is given --patience seconds for either part.
+goal, the base turning on the spot and driving straight; it is given --time-limit seconds for either part.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ from grasp_cases import GOAL, START, arguments, furnished, grasps, line, plan, t
 import mmgrasp as mg
 
 
-def sampled(world: mg.World, pose: np.ndarray, patience: float) -> bool:
+def sampled(world: mg.World, pose: np.ndarray, time_limit: float) -> bool:
     """A path through the grasp exists, as far as sampling tells."""
     robot, group = whole_body()
-    options = {"time_limit": patience, "max_iterations": 200_000, "shorten": False}
+    options = {"time_limit": time_limit, "max_iterations": 200_000, "shorten": False}
     there = mg.plan_motion(robot, group, world, start=START, tool_poses=pose, ik_solutions=16, **options)
     if there.outcome != mg.Outcome.solved:
         return False
@@ -29,7 +29,7 @@ def sampled(world: mg.World, pose: np.ndarray, patience: float) -> bool:
 
 
 def main() -> None:
-    parser = arguments(__doc__, count=200, waypoints=35, patience=60)
+    parser = arguments(__doc__, count=200, waypoints=35, time_limit=60)
     parser.add_argument("--verbose", action="store_true", help="say why a pose was not solved")
     given = parser.parse_args()
     for seed in given.seeds:
@@ -38,7 +38,7 @@ def main() -> None:
             world = furnished(pose, 1000 * seed + i)
             seconds, found = timed(lambda: plan([mg.DriveByTask(pose)], world, waypoints=given.waypoints))  # noqa: B023
             solved = found.outcome == mg.Outcome.solved
-            exists = solved or sampled(world, pose, given.patience)
+            exists = solved or sampled(world, pose, given.time_limit)
             runs.append((seconds, found, exists))
             if given.verbose and exists and not solved:
                 print(f"seed {seed}, pose {i}:\n{found.report}", file=sys.stderr, flush=True)

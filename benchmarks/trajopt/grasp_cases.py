@@ -91,7 +91,7 @@ def line(row: str, on: str, who: str, seconds: list[float], settings: str = "", 
 def arguments(text: str | None, **integers: int) -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(description=text, formatter_class=argparse.RawDescriptionHelpFormatter)
     for name, value in integers.items():
-        parser.add_argument(f"--{name}", type=int, default=value)
+        parser.add_argument(f"--{name.replace('_', '-')}", type=int, default=value)
     parser.add_argument("--seeds", type=int, nargs="+", default=[1, 2, 3])
     return parser
 

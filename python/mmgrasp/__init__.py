@@ -9,6 +9,7 @@ by name: `mmgrasp.frames` (folders of depth images), `.scan` (maps made of them)
 processes), `.problems` (benchmarks' problems), `.reproduce`.
 """
 
+import sys as _sys
 import typing as _typing
 
 from . import _core as _core
@@ -81,4 +82,4 @@ if not _typing.TYPE_CHECKING:  # type checkers know what is there; this is for w
         if place and is_import():  # the import statement would say only that there is no such name
             raise ImportError(f"mmgrasp.{name} moved: {place}", name="mmgrasp")
         message = f"mmgrasp.{name} moved: {place}" if place else f"module 'mmgrasp' has no attribute '{name}'"
-        raise AttributeError(message, name=name)
+        raise AttributeError(message, name=name, obj=_sys.modules[__name__])  # Python adds the nearest name

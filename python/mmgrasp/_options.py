@@ -94,3 +94,16 @@ class ReachOptions(TypedDict, total=False):
     thinning: float
     seed: int
     threads: int
+
+
+class TrackingOptions(TypedDict, total=False):
+    """Keyword options of BaseTracker: defaults and meaning are there."""
+
+    kp: float
+    ki: float
+    kd: float
+    offset: float
+    period: float
+    feed_forward: bool
+    feedback: bool
+    settle: float

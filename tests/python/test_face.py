@@ -5,6 +5,8 @@ from __future__ import annotations
 import ast
 import importlib
 import re
+import subprocess
+import sys
 import types
 from graphlib import TopologicalSorter
 from pathlib import Path
@@ -107,6 +109,13 @@ def test_the_new_place_is_named_in_full() -> None:
         from mmgrasp import Gripper  # type: ignore[attr-defined] # noqa: F401
     with pytest.raises(AttributeError, match=r"^module 'mmgrasp' has no attribute 'plan_holiday'$"):
         getattr(mg, "plan_holiday")  # noqa: B009
+
+
+def test_a_name_that_is_nearly_right_brings_the_right_one() -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", "import mmgrasp; mmgrasp.plan_motoin"], capture_output=True, text=True, timeout=60
+    )
+    assert done.stderr.splitlines()[-1].endswith("has no attribute 'plan_motoin'. Did you mean: 'plan_motion'?")
 
 
 PYTHON_ONLY = {"pose", "pose_to_xyz_quat", "pose_to_xyz_rpy", "cache_folder", "with_sampled_pairs"}

@@ -21,6 +21,7 @@ PASSED_ON = {
     "GraspabilityOptions": ("evaluate_graspability", _core.evaluate_graspability, ()),
     "MotionOptions": ("plan_motion", _core.plan_motion, ("seed",)),
     "ReachOptions": ("ReachDatabase.build", _core.ReachDatabase.build, ()),
+    "TrackingOptions": ("BaseTracker", _core.BaseTracker.__init__, ()),
 }
 """Type, call and options left out, for Python's functions that pass keywords on."""
 

@@ -41,7 +41,7 @@ Span clip_quadratic(double a, double b, double c) {
   return {(-b - s) / a, (-b + s) / a};
 }
 
-Span ball(double radius, const Vector3d& o, const Vector3d& d) {
+Span sphere_span(double radius, const Vector3d& o, const Vector3d& d) {
   return clip_quadratic(d.squaredNorm(), o.dot(d), o.squaredNorm() - radius * radius);
 }
 
@@ -60,7 +60,7 @@ double first_hit(const Shape& shape, const Vector3d& o, const Vector3d& d) {
     for (int k = 0; k < 3; ++k) clip_slab(span, o[k], d[k], s->size[k] / 2);
     return first_of(span);
   }
-  if (const auto* s = std::get_if<Sphere>(&shape)) return first_of(ball(s->radius, o, d));
+  if (const auto* s = std::get_if<Sphere>(&shape)) return first_of(sphere_span(s->radius, o, d));
   if (const auto* s = std::get_if<Cylinder>(&shape)) return first_of(tube(s->radius, s->length, o, d));
   if (const auto* s = std::get_if<Capsule>(&shape)) {
     // A union of three convex bodies that is convex itself: it is entered where the first is and left where the last
@@ -72,8 +72,8 @@ double first_hit(const Shape& shape, const Vector3d& o, const Vector3d& d) {
       all.leave = std::max(all.leave, part.leave);
     };
     const Vector3d cap(0, 0, s->length / 2);
-    join(ball(s->radius, o - cap, d));
-    join(ball(s->radius, o + cap, d));
+    join(sphere_span(s->radius, o - cap, d));
+    join(sphere_span(s->radius, o + cap, d));
     if (s->length > 0) join(tube(s->radius, s->length, o, d));
     return first_of(all);
   }

@@ -70,25 +70,25 @@ class Places {
   /// Finger lengths as short as what they take allows, such that no other one takes more: where the next longer one
   /// would lose something, or nothing longer is asked.
   std::vector<double> shortest_lengths(double low) const {
-    std::vector<std::pair<double, double>> asked;
+    std::vector<std::pair<double, double>> ranges;
     for (const RequiredRange& range : ranges_) {
       if (low <= range.lowest + kEqual && range.highest <= low + actuator_.stroke + kEqual)
-        asked.emplace_back(range.shortest, range.longest);
+        ranges.emplace_back(range.shortest, range.longest);
     }
-    std::sort(asked.begin(), asked.end());
+    std::sort(ranges.begin(), ranges.end());
     std::vector<double> lengths;
     double first_end = kInfinity;  // Of what the current length takes.
-    for (std::size_t i = 0; i < asked.size(); ++i) {
-      if (i > 0 && asked[i].first > first_end + kEqual) {
-        lengths.push_back(asked[i - 1].first);
+    for (std::size_t i = 0; i < ranges.size(); ++i) {
+      if (i > 0 && ranges[i].first > first_end + kEqual) {
+        lengths.push_back(ranges[i - 1].first);
         first_end = kInfinity;
         for (std::size_t k = 0; k < i; ++k) {
-          if (asked[k].second >= asked[i].first - kEqual) first_end = std::min(first_end, asked[k].second);
+          if (ranges[k].second >= ranges[i].first - kEqual) first_end = std::min(first_end, ranges[k].second);
         }
       }
-      first_end = std::min(first_end, asked[i].second);
+      first_end = std::min(first_end, ranges[i].second);
     }
-    if (!asked.empty()) lengths.push_back(asked.back().first);
+    if (!ranges.empty()) lengths.push_back(ranges.back().first);
     return lengths;
   }
 

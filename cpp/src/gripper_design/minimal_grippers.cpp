@@ -49,11 +49,11 @@ std::string refusal(const SegmentRequirement& requirement, const std::vector<Gri
   const RequiredRange range = required_range(requirement, options);
   const std::string fingers = std::to_string(requirement.fingers) + " fingers";
   if (range.shortest > range.longest + 1e-9) {
-    const std::string asked =
+    const std::string required =
         requirement.max_finger_length < kInfinity
             ? "from " + millimetres(requirement.min_finger_length) + " to " + millimetres(requirement.max_finger_length)
             : "from " + millimetres(requirement.min_finger_length);
-    return "its fingers must be " + asked +
+    return "its fingers must be " + required +
            " long, not within shortest_finger = " + millimetres(options.shortest_finger) +
            " and longest_finger = " + millimetres(options.longest_finger) +
            (options.length_margin > 0 ? " with length_margin = " + millimetres(options.length_margin) : "");

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/robot/detail/joint_group_data.hpp"
 
 namespace mmgrasp::detail {
 
@@ -10,49 +11,26 @@ ToolChain::ToolChain(const JointGroup& group) : ToolChain(group, group.tip_link(
 
 ToolChain::ToolChain(const JointGroup& group, int to_link, const Pose& T_link_point) {
   const Robot& robot = group.robot();
-  // Links between moving joints stand still relative to each other: one placement gives their offsets.
-  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(group.size());
-  Poses T_world_link;
-  group.link_poses(zero, T_world_link);
-  const auto pose = [&](int link) -> const Pose& { return T_world_link[link]; };
-
-  std::vector<const Joint*> moving;
-  for (int link = to_link; link > 0;) {
-    const Joint& joint = robot.joints()[robot.links()[link].parent_joint];
-    const int index = static_cast<int>(&joint - robot.joints().data());
-    const auto& columns = group.joints();
-    if (joint.mimic_joint >= 0) {
-      const bool moves = std::find(columns.begin(), columns.end(), joint.mimic_joint) != columns.end();
-      require(!moves, "joint", joint.name, "must not mimic another joint on the way to the tip");
-    }
-    if (std::find(columns.begin(), columns.end(), index) != columns.end()) {
-      require(joint.type == JointType::revolute || joint.type == JointType::continuous ||
-                  joint.type == JointType::prismatic,
-              "joint", joint.name, "must turn about an axis or slide along one");
-      moving.push_back(&joint);
-    }
-    link = joint.parent_link;
-  }
-  std::reverse(moving.begin(), moving.end());
-
-  Pose T_world_before = Pose::Identity();
+  const FrameTree& tree = group.data().model->kinematics->tree;
+  Rigid before;  // the root in the frame of the step before
   if (group.has_base()) {
     const Eigen::Vector3d axes[] = {Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ()};
-    for (int i = 0; i < 3; ++i) steps_.push_back({Pose::Identity(), axes[i], i == 2, i});
+    for (int i = 0; i < 3; ++i) steps_.push_back({Rigid(), axes[i], i == 2, i});
+  } else {
+    before = Rigid(group.T_world_root());
   }
-  for (const Joint* joint : moving) {
-    const auto& columns = group.joints();
-    const int index = static_cast<int>(joint - robot.joints().data());
-    Step step;
-    step.column = static_cast<int>(std::find(columns.begin(), columns.end(), index) - columns.begin());
-    step.axis = joint->axis;
-    step.turns = joint->type != JointType::prismatic;
-    const Pose T_world_joint = pose(joint->parent_link) * joint->T_parent_joint;
-    step.T_before = T_world_before.inverse() * T_world_joint;
-    T_world_before = pose(joint->child_link);
-    steps_.push_back(step);
+  std::vector<const ElementaryMotion*> motions = tree.motions_above(tree.frame_of_link[to_link]);
+  std::reverse(motions.begin(), motions.end());
+  for (const ElementaryMotion* motion : motions) {
+    // The inner frames of planar and floating joints have no link.
+    require(motion->frame < static_cast<int>(robot.links().size()), "group", group.name(),
+            "must not move its tip by a planar or floating joint");
+    const Joint& joint = robot.joints()[robot.links()[motion->frame].parent_joint];
+    require(joint.mimic_joint < 0, "joint", joint.name, "must not mimic another joint on the way to the tip");
+    steps_.push_back({before * motion->rest, motion->axis, motion->motion == Motion::revolute, motion->drive.column});
+    before = Rigid();
   }
-  T_last_tip_ = T_world_before.inverse() * pose(to_link) * T_link_point;
+  T_last_tip_ = before * tree.link_in_frame[to_link] * Rigid(T_link_point);
 }
 
 void ToolChain::evaluate(const double* q, State& state) const {
@@ -63,8 +41,8 @@ void ToolChain::evaluate(const double* q, State& state) const {
   Eigen::Quaterniond R = Eigen::Quaterniond::Identity();
   for (std::size_t i = 0; i < n; ++i) {
     const Step& step = steps_[i];
-    p += R * step.T_before.translation();
-    R = R * Eigen::Quaterniond(step.T_before.linear());
+    p += R * step.before.t;
+    R = R * Eigen::Quaterniond(step.before.R);
     const Eigen::Vector3d axis = R * step.axis;
     const double value = q[step.column];
     if (step.turns) {
@@ -77,9 +55,9 @@ void ToolChain::evaluate(const double* q, State& state) const {
       p += value * axis;
     }
   }
-  p += R * T_last_tip_.translation();
+  p += R * T_last_tip_.t;
   state.p = p;
-  state.rotation = R * Eigen::Quaterniond(T_last_tip_.linear());
+  state.rotation = R * Eigen::Quaterniond(T_last_tip_.R);
   for (std::size_t i = 0; i < n; ++i)
     if (steps_[i].turns) state.v[i] = state.w[i].cross(p - state.v[i]);
 }

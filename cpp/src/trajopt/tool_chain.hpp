@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <vector>
 
+#include "mmgrasp/core/detail/rigid.hpp"
 #include "mmgrasp/robot/joint_group.hpp"
 
 namespace mmgrasp::detail {
@@ -17,7 +18,7 @@ class MMGRASP_EXPORT ToolChain {
   ToolChain(const JointGroup& group, int link, const Pose& T_link_point);
 
   struct Step {
-    Pose T_before = Pose::Identity();  ///< From the joint before (the world, for the first) to this joint.
+    Rigid before;  ///< The joint in the frame of the one before (in the world, for the first).
     Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
     bool turns = true;
     int column = 0;
@@ -42,7 +43,7 @@ class MMGRASP_EXPORT ToolChain {
 
  private:
   std::vector<Step> steps_;
-  Pose T_last_tip_ = Pose::Identity();
+  Rigid T_last_tip_;
 };
 
 }  // namespace mmgrasp::detail

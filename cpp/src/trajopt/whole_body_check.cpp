@@ -54,13 +54,13 @@ struct Sample {
   VectorXd q, drive;
 };
 
-std::vector<Sample> samples_of(const WholeBodyTrajectory& trajectory, int finer) {
+std::vector<Sample> samples_of(const WholeBodyTrajectory& trajectory, int resolution_factor) {
   std::vector<Sample> samples;
   const auto& times = trajectory.times();
   for (int i = 0; i + 1 < static_cast<int>(times.size()); ++i) {
     const double h = times[i + 1] - times[i];
-    for (int k = 0; k < finer; ++k) {
-      const double time = times[i] + h * k / finer;
+    for (int k = 0; k < resolution_factor; ++k) {
+      const double time = times[i] + h * k / resolution_factor;
       samples.push_back({time, i, trajectory.at(time), trajectory.drive_at(time)});
     }
   }
@@ -306,9 +306,9 @@ void check_collisions(Ledger& ledger, const std::vector<CollisionChecker*>& chec
 }  // namespace
 
 std::vector<Violation> check_whole_body(const WholeBodyProblem& problem, const WholeBodyTrajectory& trajectory,
-                                        const std::vector<CollisionChecker*>& checkers, int finer) {
+                                        const std::vector<CollisionChecker*>& checkers, int resolution_factor) {
   Ledger ledger(trajectory);
-  const std::vector<Sample> samples = samples_of(trajectory, finer);
+  const std::vector<Sample> samples = samples_of(trajectory, resolution_factor);
   check_motion(ledger, trajectory);
   check_limits(ledger, problem, trajectory, samples);
   check_ends(ledger, problem, trajectory);

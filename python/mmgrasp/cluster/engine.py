@@ -21,7 +21,7 @@ from .store import ShardStore
 
 log = logging.getLogger("mmgrasp.cluster")
 TOPIC = "mmgrasp-shards"
-PATIENCE = 2.0  # for the last lines of the log [s]
+LOG_WAIT = 2.0  # for the last lines of the log [s]
 FAILURES = 10  # workers that a shard may outlive before it is held for the cause
 
 
@@ -93,7 +93,7 @@ class Engine:
 
     def _await_log(self, run: str, shards: set[str]) -> None:
         """Results may overtake what workers say about them; what is lost with a worker never arrives."""
-        until = time.monotonic() + PATIENCE
+        until = time.monotonic() + LOG_WAIT
         while time.monotonic() < until:
             with self._lock:
                 shards -= {e.shard for e in self.events if e.kind == "done" and e.run == run}
@@ -103,11 +103,11 @@ class Engine:
 
     def heard(self, event: tuple[float, dict[str, Any]]) -> None:
         """Called with what workers report."""
-        told = event[1]
+        record = event[1]
         with self._lock:
-            known = [e.kind for e in self.events if e.shard == told["shard"] and e.run == told["run"]]
-        kind = "again" if told["kind"] == "begun" and "begun" in known else told["kind"]
-        self._note(ShardEvent(kind, told["shard"], told["worker"], told["time"], told["run"]))
+            known = [e.kind for e in self.events if e.shard == record["shard"] and e.run == record["run"]]
+        kind = "again" if record["kind"] == "begun" and "begun" in known else record["kind"]
+        self._note(ShardEvent(kind, record["shard"], record["worker"], record["time"], record["run"]))
 
     def _note(self, event: ShardEvent) -> None:
         with self._lock:
@@ -131,8 +131,8 @@ def run_shard(key: str, code: str, run: str, function: Callable[..., Any], item:
     worker = get_worker()
 
     def tell(kind: str) -> None:
-        told = {"kind": kind, "shard": key, "worker": worker.address, "time": time.time(), "run": run}
-        worker.log_event(TOPIC, told)
+        record = {"kind": kind, "shard": key, "worker": worker.address, "time": time.time(), "run": run}
+        worker.log_event(TOPIC, record)
 
     tell("begun")
     result = function(**item)

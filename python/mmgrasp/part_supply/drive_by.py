@@ -218,12 +218,12 @@ def _in_passing(
     start = np.array([*here, *merged[0].trajectory.positions[0]])
     stage = f"drive-by {leg + 1} of {len(plan.stops)}: {part.name}"
     group, world = _moving_group(plan, problem, opening), _world(problem, removed)
-    told = progress and (lambda _, fraction: progress(stage, fraction))
+    forward = progress and (lambda _, fraction: progress(stage, fraction))
     known = _one_after_the_other(plan.route[leg].poses, plan.route[leg].duration(problem.robot), merged, dwell)
     reports = []
     for waypoints in [options["waypoints"]] if "waypoints" in options else WAYPOINTS:
         keywords: DriveByOptions = {**options, "waypoints": waypoints}
-        result = _core.shorten_drive_by(group, world, tasks=tasks, **known, progress=told, **keywords)
+        result = _core.shorten_drive_by(group, world, tasks=tasks, **known, progress=forward, **keywords)
         reports.append(result.report)
         if result.outcome == Outcome.solved:
             break
@@ -231,7 +231,7 @@ def _in_passing(
         goal = _exactly(start, [*plan.stops[leg].pose, *merged[-1].trajectory.positions[-1]])
         keywords = {"iterations": 600, **keywords}
         result = _core.plan_drive_by(
-            group.robot, group, world, start=start, tasks=tasks, goal=goal, progress=told, **keywords
+            group.robot, group, world, start=start, tasks=tasks, goal=goal, progress=forward, **keywords
         )
         reports.append(result.report)
     made = DriveByPick(leg, leg, index, part.name, before, opening, dwell, result, "".join(reports))

@@ -66,9 +66,9 @@ def taken_by_paper(printed: bool) -> dict[str, str]:
 
 
 def figure_5_13(context: Context) -> Result:
-    asked = requirements()
-    found = minimal_grippers(asked, ACTUATORS)
-    grid = minimal_grippers(asked, ACTUATORS, grid=(100, 3))
+    required = requirements()
+    found = minimal_grippers(required, ACTUATORS)
+    grid = minimal_grippers(required, ACTUATORS, grid=(100, 3))
     printed, closed = taken_by_paper(True), taken_by_paper(False)
     result = Result(
         setup={
@@ -87,7 +87,7 @@ def figure_5_13(context: Context) -> Result:
     )
     for i, part in enumerate(found.parts):
         values = result.row({"part": part})
-        requirement = asked[found.requirement_of_part[i]]
+        requirement = required[found.requirement_of_part[i]]
         values["gripper, (5.2) with <="] = (closed[part], str(found.gripper_of_part[i] + 1))
         values["gripper, (5.2) as printed"] = (printed[part], None)
         values["held by opening [mm]"] = (None, round(1e3 * requirement.opening, 3))
@@ -111,7 +111,7 @@ def figure_5_13(context: Context) -> Result:
     )
     result.drawing = {
         "grippers": [[g.fingers, g.min_opening, g.max_opening, g.finger_length] for g in found.grippers],
-        "segments": [[r.part, r.fingers, r.opening, r.min_finger_length] for r in asked],
+        "segments": [[r.part, r.fingers, r.opening, r.min_finger_length] for r in required],
     }
     return result
 
@@ -161,16 +161,18 @@ def random_assembly(parts: int, seed: int) -> list[SegmentRequirement]:
     return out
 
 
-def every_set(asked: list[SegmentRequirement], strokes: dict[int, float], most: int) -> int | None:
+def every_set(required: list[SegmentRequirement], strokes: dict[int, float], most: int) -> int | None:
     """Least number of grippers by trying all sets of up to `most`; openings end at a segment, fingers are long."""
-    parts = list(dict.fromkeys(r.part for r in asked))
+    parts = list(dict.fromkeys(r.part for r in required))
     masks = set()
-    for end in asked:
+    for end in required:
         low = max(0.0, end.opening - strokes[end.fingers])
         gripper = Gripper(
             fingers=end.fingers, min_opening=low, max_opening=low + strokes[end.fingers], finger_length=0.1
         )
-        masks.add(sum(1 << i for i, part in enumerate(parts) if any(gripper.holds(r) for r in asked if r.part == part)))
+        masks.add(
+            sum(1 << i for i, part in enumerate(parts) if any(gripper.holds(r) for r in required if r.part == part))
+        )
     for size in range(1, most + 1):
         for chosen in itertools.combinations(sorted(masks), size):
             together = 0
@@ -194,16 +196,16 @@ def growth(context: Context) -> Result:
         for seed in range(assemblies):
             if context.progress is not None:
                 context.progress(f"{size} parts, stroke {1e3 * stroke:g} mm", seed / assemblies)
-            asked = random_assembly(size, seed)
+            required = random_assembly(size, seed)
             begin = time.perf_counter()
-            found = minimal_grippers(asked, drives)
+            found = minimal_grippers(required, drives)
             seconds.append(time.perf_counter() - begin)
             counts.append(len(found.grippers))
             proven += found.lower_bound == len(found.grippers)
             changes.append(found.changes)
             if size == 10:
                 tried += 1
-                agreed += every_set(asked, {2: stroke, 3: stroke}, len(found.grippers)) == len(found.grippers)
+                agreed += every_set(required, {2: stroke, 3: stroke}, len(found.grippers)) == len(found.grippers)
         values = result.row({"parts": size, "stroke [mm]": 1e3 * stroke})
         values["grippers, mean"] = (None, float(np.mean(counts)))
         values["proven least"] = (None, f"{proven} of {assemblies}")

@@ -38,7 +38,7 @@ def roadmap_of(robot: str, vertices: int, seed: int, gamma: float) -> Roadmap:
     return Roadmap.build(pipe_robot(robot)[1], vertices=vertices, gamma=gamma, seed=seed)
 
 
-def carry(
+def plan_transfer(
     cell: PipeCell, count: int, run: int, *, vertices: int = 0, gamma: float = 0.0, **options: Any
 ) -> dict[str, Any]:
     """One call of plan_manipulation as plain values; with `vertices` over the run's roadmap of that size."""

@@ -51,7 +51,7 @@ class Limits(TypedDict):
 LIMITS: Limits = {"min_radius": UNCERTAINTY, "online_limit": ONLINE}
 
 
-def told(result: _core.PolicyResult, held: list[float]) -> dict[str, Any]:
+def record(result: _core.PolicyResult, held: list[float]) -> dict[str, Any]:
     """A row of the table. `held`: mean radius of each round's discs if the trays stay grouped as for ALL."""
     return {
         "mean radius": result.mean_radius,
@@ -67,7 +67,7 @@ def told(result: _core.PolicyResult, held: list[float]) -> dict[str, Any]:
     }
 
 
-def held_radius(grid: _core.BaseGrid, regions: list[_core.BaseRegion], groups: list[tuple[int, ...]]) -> float:
+def grouped_radius(grid: _core.BaseGrid, regions: list[_core.BaseRegion], groups: list[tuple[int, ...]]) -> float:
     masks = [region.cells(grid) for region in regions]
     shared = [np.bitwise_and.reduce([masks[t] for t in group]) for group in groups]
     return float(np.mean([_core.inscribed_circle(grid, mask)[1] for mask in shared]))
@@ -96,8 +96,8 @@ def regular(row: Row, samples: int) -> dict[str, Any]:
             chosen = {"all": list(every), "remaining": None, "targets": None}[policy]
             parts = [chosen or list(order[t][i:] if policy == "remaining" else [order[t][i]]) for t in trays]
             regions = [_core.BaseRegion(str(t), objects.region(t, parts[t]), grid) for t in trays]
-            held.append(held_radius(grid, regions, groups))
-        out[name] = told(ran, held)
+            held.append(grouped_radius(grid, regions, groups))
+        out[name] = record(ran, held)
     return out
 
 
@@ -139,8 +139,8 @@ def randomly(row: Row, samples: int, seed: int) -> dict[str, Any]:
         ran = _core.run_policy(grid, cells, order, POLICIES[name], planned=planned, **LIMITS)
         groups = groups or [tuple(stop.trays) for stop in ran.rounds[0].stops]
         served = [[g for g in (tuple(t for t in g if order[t][i] >= 0) for g in groups) if g] for i in range(COUNT)]
-        held = [held_radius(grid, planned(i), served[i]) for i in range(COUNT) if served[i]]
-        out[f"Rand/{name}"] = told(ran, held)
+        held = [grouped_radius(grid, planned(i), served[i]) for i in range(COUNT) if served[i]]
+        out[f"Rand/{name}"] = record(ran, held)
     return out
 
 

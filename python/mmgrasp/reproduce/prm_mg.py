@@ -10,7 +10,7 @@ import numpy as np
 from ..problems.pipe_cells import pipe_cell
 from .drawing import figure
 from .entry import Context, Entry, Result
-from .pipe_runs import GAMMA, PROBLEMS, RUNS, by_seed, carry, describe, describe_roadmap, items_of, mean, paired
+from .pipe_runs import GAMMA, PROBLEMS, RUNS, by_seed, describe, describe_roadmap, items_of, mean, paired, plan_transfer
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -61,7 +61,7 @@ def successes(number: int, seed: int, run: int, counts: tuple[int, ...], vertice
     for way, (style, gamma) in WAYS.items():
         cell = pipe_cell(number, seed, style=style)
         for count in counts:
-            one = carry(cell, count, run, vertices=vertices, gamma=gamma)
+            one = plan_transfer(cell, count, run, vertices=vertices, gamma=gamma)
             found.setdefault(way, []).append({key: one[key] for key in ("solved", "reachable", "cost")})
     return {"number": number, "seed": seed, "found": found}
 
@@ -151,7 +151,7 @@ def variants(number: int, seed: int, run: int, counts: tuple[int, ...], vertices
             ("batch", 0, False),
             ("ours", 0, True),
         ):
-            one = carry(cell, count, run, vertices=vertices, batch=batch, lazy_grasps=lazy)
+            one = plan_transfer(cell, count, run, vertices=vertices, batch=batch, lazy_grasps=lazy)
             found.setdefault(name, []).append(one)
     return {"number": number, "seed": seed, "found": found}
 
@@ -273,7 +273,7 @@ BATCHES = (1, 5, 20, 50, 100, 200, 500, 1000, 2000)
 
 def batches(number: int, seed: int, run: int, count: int, sizes: tuple[int, ...], vertices: int) -> dict[str, Any]:
     cell = pipe_cell(number, seed)
-    found = [carry(cell, count, run, vertices=vertices, batch=size, lazy_grasps=False) for size in sizes]
+    found = [plan_transfer(cell, count, run, vertices=vertices, batch=size, lazy_grasps=False) for size in sizes]
     return {"number": number, "seed": seed, "found": found}
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from ..problems.pipe_cells import pipe_cell
 from .drawing import figure
 from .entry import Context, Entry, Result
-from .pipe_runs import PROBLEMS, by_seed, carry, describe, describe_roadmap, items_of, mean, paired
+from .pipe_runs import PROBLEMS, by_seed, describe, describe_roadmap, items_of, mean, paired, plan_transfer
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -32,9 +32,9 @@ def both_planners(number: int, seed: int, run: int, counts: tuple[int, ...], lar
     for count in counts:
         batch = max(1, count // 5)
         ones = (
-            carry(cell, count, run, planner="rrt_star_mg", max_iterations=SAMPLES),
-            carry(cell, count, run, vertices=1000, batch=batch, lazy_grasps=False),
-            carry(cell, count, run, vertices=large, batch=batch, lazy_grasps=False),
+            plan_transfer(cell, count, run, planner="rrt_star_mg", max_iterations=SAMPLES),
+            plan_transfer(cell, count, run, vertices=1000, batch=batch, lazy_grasps=False),
+            plan_transfer(cell, count, run, vertices=large, batch=batch, lazy_grasps=False),
         )
         for name, one in zip(PLANNERS, ones, strict=True):
             found.setdefault(name, []).append(one)
@@ -123,7 +123,9 @@ def versions(number: int, seed: int, run: int, counts: tuple[int, ...], samples:
     found = {}
     for name, on in (("V1", False), ("V2", True)):
         found[name] = [
-            carry(cell, count, run, planner="rrt_star_mg", max_iterations=samples, bidirectional=on, informed=on)
+            plan_transfer(
+                cell, count, run, planner="rrt_star_mg", max_iterations=samples, bidirectional=on, informed=on
+            )
             for count in counts
         ]
     return {"number": number, "seed": seed, "found": found}
@@ -195,7 +197,7 @@ TABLE_5_3 = {1.0: (100, 1779, 3.49), 0.5: (100, 2809, 3.49), 0.0: (100, 1213, 3.
 def explorations(number: int, seed: int, run: int, count: int, samples: int) -> dict[str, Any]:
     cell = pipe_cell(number, seed)
     found = [
-        carry(cell, count, run, planner="rrt_star_mg", max_iterations=samples, exploration=share)
+        plan_transfer(cell, count, run, planner="rrt_star_mg", max_iterations=samples, exploration=share)
         for share in EXPLORATION
     ]
     return {"number": number, "seed": seed, "found": found}

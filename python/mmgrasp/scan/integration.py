@@ -245,7 +245,7 @@ def _compare_sensors(folder: FrameFolder, scan: Scan) -> None:
         if sensor is None and not folder.from_file and folder.names_sensors:
             sensor = Sensor(name)
         if sensor is None:
-            _check_gone(folder, scan, name)
+            _check_missing(folder, scan, name)
             continue
         at = was["intrinsics"]
         if sensor.intrinsics is None and at is not None:
@@ -261,7 +261,7 @@ def _compare_sensors(folder: FrameFolder, scan: Scan) -> None:
                 )
 
 
-def _check_gone(folder: FrameFolder, scan: Scan, sensor: str) -> None:
+def _check_missing(folder: FrameFolder, scan: Scan, sensor: str) -> None:
     """A sensor of the map that nothing describes any more may be gone only together with its frames."""
     there = {frame.name for frame in folder.frames}
     frame = next((record.name for record in scan.frames if record.sensor == sensor and record.name in there), None)

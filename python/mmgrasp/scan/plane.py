@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 _CANDIDATES = 300
-_ALIKE = 0.45  # normals of a plane's surface lie within this of it [rad]: those of noisy maps vary
+_NORMAL_SPREAD = 0.45  # normals of a plane's surface lie within this of it [rad]: those of noisy maps vary
 _LEAST_CELLS = 50
 
 
@@ -67,7 +67,7 @@ def _cell_means(points: np.ndarray, normals: np.ndarray, cell: float) -> tuple[n
 
 
 def _inliers(P: np.ndarray, N: np.ndarray, normal: np.ndarray, offset: float, tolerance: float) -> np.ndarray:
-    return np.asarray((np.abs(P @ normal - offset) <= tolerance) & (N @ normal >= np.cos(_ALIKE)))
+    return np.asarray((np.abs(P @ normal - offset) <= tolerance) & (N @ normal >= np.cos(_NORMAL_SPREAD)))
 
 
 def _fitted(P: np.ndarray, N: np.ndarray) -> tuple[np.ndarray, float]:

@@ -139,11 +139,11 @@ def cells_around(points: np.ndarray, radii: np.ndarray, edge: float) -> np.ndarr
     parts = [np.zeros((0, 3), dtype=np.int64)]
     for k in np.unique(reach):
         span = range(-int(k), int(k) + 1)
-        ball = np.array(
+        sphere = np.array(
             [o for o in itertools.product(span, repeat=3) if sum(x * x for x in o) <= k * k], dtype=np.int64
         )
         own = np.unique(homes[reach == k], axis=0)
-        parts.append(np.unique((own[:, None] + ball[None]).reshape(-1, 3), axis=0))
+        parts.append(np.unique((own[:, None] + sphere[None]).reshape(-1, 3), axis=0))
     return np.unique(np.concatenate(parts), axis=0)
 
 

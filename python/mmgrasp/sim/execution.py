@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, TypedDict
+from typing import TypedDict
 
 import numpy as np
 
 from .._core import InvalidInput
+from .._options import TrackingOptions
 
 
 class ExecutionOptions(TypedDict, total=False):
@@ -20,7 +21,7 @@ class ExecutionOptions(TypedDict, total=False):
     lift: float
     lift_time: float
     hold: float
-    tracking: dict[str, Any]
+    tracking: TrackingOptions
     slip: tuple[float, float]
     travel_noise: float
     position_noise: float
@@ -47,8 +48,8 @@ class Execution:
     """[s]"""
     hold: float = 2.0
     """And stands this long [s]."""
-    tracking: dict[str, Any] = field(default_factory=dict)
-    """Keywords of BaseTracker; kp, feedback, ..."""
+    tracking: TrackingOptions = field(default_factory=TrackingOptions)
+    """Keyword options of BaseTracker: kp, feedback, ..."""
     slip: tuple[float, float] = (0.0, 0.0)
     """Share of the left and right wheel's speed that is lost; in [0, 1)."""
     travel_noise: float = 0.0

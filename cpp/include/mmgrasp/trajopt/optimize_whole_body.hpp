@@ -65,14 +65,14 @@ struct MMGRASP_EXPORT WholeBodyResult {
   bool usable() const { return outcome == Outcome::solved || outcome == Outcome::approximate; }
 };
 
-/// Judges a trajectory on its own roll-out `finer` times finer than its waypoints, by other means than the optimiser's:
-/// forward kinematics of the group, Runge-Kutta integration of the base, the collision checker. `checkers` is empty or
-/// holds one pointer per interval (the part held changes on the way); null: nothing can collide there. Between samples
-/// collisions are looked for by conservative advancement.
+/// Judges a trajectory on its own roll-out `resolution_factor` times finer than its waypoints, by other means than the
+/// optimiser's: forward kinematics of the group, Runge-Kutta integration of the base, the collision checker. `checkers`
+/// is empty or holds one pointer per interval (the part held changes on the way); null: nothing can collide there.
+/// Between samples collisions are looked for by conservative advancement.
 MMGRASP_EXPORT std::vector<Violation> check_whole_body(const WholeBodyProblem& problem,
                                                        const WholeBodyTrajectory& trajectory,
                                                        const std::vector<CollisionChecker*>& checkers = {},
-                                                       int finer = 10);
+                                                       int resolution_factor = 10);
 
 /// Finds a locally time-optimal trajectory of base and arm near the guess (P1 4.4): the problem as a sparse nonlinear
 /// program, solved again with separating planes wherever the answer collides, and checked by check_whole_body() before

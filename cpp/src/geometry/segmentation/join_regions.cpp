@@ -155,23 +155,23 @@ class RegionJoiner {
     return region.middles.empty() ? 0 : static_cast<double>(on) / static_cast<double>(region.middles.size());
   }
 
-  void join(int kept, int gone) {
-    Region &a = regions_[kept], &b = regions_[gone];
+  void join(int kept, int removed) {
+    Region &a = regions_[kept], &b = regions_[removed];
     a.area += b.area;
     a.middles.insert(a.middles.end(), b.middles.begin(), b.middles.end());
     std::vector<Eigen::Vector3d> points = a.hull.points;
     points.insert(points.end(), b.hull.points.begin(), b.hull.points.end());
     a.hull = region_hull(points);
     for (const auto& [other, shared] : b.around) {
-      regions_[other].around.erase(gone);
+      regions_[other].around.erase(removed);
       if (other == kept) continue;
       a.around[other] += shared;
       regions_[other].around[kept] += shared;
     }
-    a.around.erase(gone);
+    a.around.erase(removed);
     b = Region{};
     b.alive = false;
-    into_[gone] = kept;
+    into_[removed] = kept;
   }
 
   std::vector<Region> regions_;

@@ -117,12 +117,12 @@ std::optional<RoundFit> sphere_through(const std::vector<Vector3d>& points) {
     normal += row * row.transpose();
     right += p.squaredNorm() * row;
   }
-  const Eigen::Vector4d ball = normal.ldlt().solve(right);
-  const double square = ball[3] + ball.head<3>().squaredNorm();
-  if (!ball.allFinite() || square <= 0) return std::nullopt;
+  const Eigen::Vector4d sphere = normal.ldlt().solve(right);
+  const double square = sphere[3] + sphere.head<3>().squaredNorm();
+  if (!sphere.allFinite() || square <= 0) return std::nullopt;
   RoundFit out;
   out.kind = RoundFit::Kind::sphere;
-  out.point = ball.head<3>();
+  out.point = sphere.head<3>();
   out.radius = std::sqrt(square);
   return out;
 }

@@ -155,11 +155,11 @@ std::vector<FittedPrimitive> round_candidates(const SegmentSurface& s) {
             sphere ? cover.area > kLeastSphere * 4 * kPi * fit->radius * fit->radius : cover.turn >= kLeastTurn;
         if (enough && cover.area > kLeastShare * s.area) out.push_back(placed(s, *fit, cover));
       }
-      std::vector<char> gone(points.size(), 0);
-      for (const int i : on) gone[i] = 1;
+      std::vector<char> taken(points.size(), 0);
+      for (const int i : on) taken[i] = 1;
       std::vector<Vector3d> rest, rest_normals;
       for (std::size_t i = 0; i < points.size(); ++i) {
-        if (gone[i]) continue;
+        if (taken[i]) continue;
         rest.push_back(points[i]);
         rest_normals.push_back(normals[i]);
       }

@@ -226,12 +226,12 @@ class OutwardCollapse {
   }
 
   void apply(const Collapse& collapse) {
-    const int kept = collapse.from, gone = collapse.to;
+    const int kept = collapse.from, removed = collapse.to;
     std::vector<int> staying;
-    for (const int t : star(kept, gone)) {
-      if (!has(t, kept) || !has(t, gone)) {
+    for (const int t : star(kept, removed)) {
+      if (!has(t, kept) || !has(t, removed)) {
         for (int& corner : triangles_[t])
-          if (corner == gone) corner = kept;
+          if (corner == removed) corner = kept;
         staying.push_back(t);
         continue;
       }
@@ -241,7 +241,7 @@ class OutwardCollapse {
     }
     points_[kept] = collapse.target;
     around_[kept] = staying;
-    around_[gone].clear();
+    around_[removed].clear();
     ++version_[kept];
     const Ring ring = neighbours(kept);
     for (const int vertex : ring.sorted) ++version_[vertex];

@@ -76,7 +76,7 @@ bool exact_box(const TriangleMesh& mesh, MeshStandIn& found) {
 /// Centre of a ball around the points that is nearly as small as can be (Badoiu and Clarkson's steps towards the
 /// farthest point).
 template <typename Vector>
-Vector ball_centre(const std::vector<Vector>& points) {
+Vector sphere_centre(const std::vector<Vector>& points) {
   Vector centre = points.front();
   for (int step = 1; step <= kCentreSteps; ++step) {
     const auto farthest = std::max_element(points.begin(), points.end(), [&](const Vector& a, const Vector& b) {
@@ -147,7 +147,7 @@ class PrimitiveFit {
   }
 
   void try_sphere() {
-    const Vector3d centre = ball_centre(hull_.vertices);
+    const Vector3d centre = sphere_centre(hull_.vertices);
     double radius = 0;
     for (const Vector3d& v : mesh_.vertices) radius = std::max(radius, (v - centre).norm());
     // A ball about the same centre lies in the hull: no point of the sphere is farther from it than the radii differ.
@@ -172,7 +172,7 @@ class PrimitiveFit {
   void try_cylinder(const Matrix3d& R) {
     std::vector<Eigen::Vector2d> shadow;
     for (const Vector3d& v : hull_.vertices) shadow.push_back((R.transpose() * v).head<2>());
-    const Eigen::Vector2d centre = ball_centre(shadow);
+    const Eigen::Vector2d centre = sphere_centre(shadow);
     double low = detail::kInfinity, high = -low, radius = 0;
     for (const Vector3d& v : mesh_.vertices) {
       const Vector3d p = R.transpose() * v;

@@ -79,14 +79,14 @@ std::vector<RayHit> solid_exits(const std::vector<RayHit>& hits, double toleranc
   for (std::size_t i = 0; i < hits.size();) {
     const double t = hits[i].distance;
     const int before = depth;
-    const RayHit* leaving = nullptr;
+    const RayHit* exit = nullptr;
     for (; i < hits.size() && hits[i].distance - t <= tolerance; ++i) {
-      if (!hits[i].front) leaving = &hits[i];
+      if (!hits[i].front) exit = &hits[i];
       depth += hits[i].front ? 1 : -1;
     }
     if (depth < 0) return {};
     if (before == 0 && depth > 0 && std::abs(t) <= tolerance) entered_at_start = true;
-    if (before > 0 && depth == 0 && t > tolerance && leaving) exits.push_back(*leaving);
+    if (before > 0 && depth == 0 && t > tolerance && exit) exits.push_back(*exit);
   }
   if (depth != 0 || !entered_at_start) exits.clear();
   return exits;

@@ -15,10 +15,10 @@ constexpr double kSide = 0.008;  // of the cells in which points are looked for 
 HandClearance::HandClearance(const std::vector<Vector3d>& points, const std::vector<double>& sigma, double sigmas,
                              double margin, const std::optional<double>& table)
     : margin_(margin), table_(table), grid_(points, kSide) {
-  balls_.reserve(points.size());
+  spheres_.reserve(points.size());
   for (const std::uint32_t i : grid_.order()) {
-    balls_.push_back({points[i], margin + sigmas * sigma[i]});
-    largest_ = std::max(largest_, balls_.back().radius);
+    spheres_.push_back({points[i], margin + sigmas * sigma[i]});
+    largest_ = std::max(largest_, spheres_.back().radius);
   }
 }
 
@@ -46,16 +46,16 @@ bool HandClearance::touches(const Pose& T, const Vector3d& half, const std::opti
   const Vector3d offset = to_box * T.translation();
   // A cell is passed over when its middle is farther from the box than its half diagonal and the largest ball.
   const double far = grid_.side() * std::sqrt(3.0) / 2 + most;
-  return grid_.any_cell({T.translation() - reach, T.translation() + reach},
-                        [&](const Vector3d& middle, std::uint32_t first, std::uint32_t last) {
-                          const Vector3d outside = ((to_box * middle - offset).cwiseAbs() - half).cwiseMax(0);
-                          if (outside.squaredNorm() > far * far) return false;
-                          return std::any_of(balls_.begin() + first, balls_.begin() + last, [&](const Ball& ball) {
-                            const Vector3d beyond = (to_box * ball.centre - offset).cwiseAbs() - half;
-                            return depth ? beyond.maxCoeff() < -*depth
-                                         : beyond.cwiseMax(0).squaredNorm() < ball.radius * ball.radius;
-                          });
-                        });
+  return grid_.any_cell(
+      {T.translation() - reach, T.translation() + reach},
+      [&](const Vector3d& middle, std::uint32_t first, std::uint32_t last) {
+        const Vector3d outside = ((to_box * middle - offset).cwiseAbs() - half).cwiseMax(0);
+        if (outside.squaredNorm() > far * far) return false;
+        return std::any_of(spheres_.begin() + first, spheres_.begin() + last, [&](const BoundingSphere& sphere) {
+          const Vector3d beyond = (to_box * sphere.centre - offset).cwiseAbs() - half;
+          return depth ? beyond.maxCoeff() < -*depth : beyond.cwiseMax(0).squaredNorm() < sphere.radius * sphere.radius;
+        });
+      });
 }
 
 }  // namespace mmgrasp::detail

@@ -29,14 +29,14 @@ class MMGRASP_EXPORT HandClearance {
  private:
   bool touches(const Pose& T_world_box, const Eigen::Vector3d& half, const std::optional<double>& depth) const;
 
-  struct Ball {
+  struct BoundingSphere {
     Eigen::Vector3d centre;
     double radius;
   };
   double margin_, largest_ = 0;  ///< Largest radius.
   std::optional<double> table_;
   PointGrid grid_;
-  std::vector<Ball> balls_;  ///< In the grid's order.
+  std::vector<BoundingSphere> spheres_;  ///< In the grid's order.
 };
 
 }  // namespace mmgrasp::detail

@@ -42,7 +42,7 @@ bool PoseSearch::start(const Pose& T_world_tip, std::uint64_t number) {
   motion_ = Rigid(T_world_tip);
   number_ = number;
   cause_ = Rejection::unreachable;
-  out_of_reach_ = hand_asked_ = false;
+  out_of_reach_ = hand_checked_ = false;
   sample_ = -1;
   outside_.fill(kInfinity);
   return maybe_in_reach(arm_, T_world_tip.translation());
@@ -50,8 +50,8 @@ bool PoseSearch::start(const Pose& T_world_tip, std::uint64_t number) {
 
 bool PoseSearch::refused(Rejection cause) {
   if (rank(cause) > rank(cause_)) cause_ = cause;
-  if (rank(cause) >= rank(Rejection::self_collision) && !hand_asked_) {
-    hand_asked_ = true;
+  if (rank(cause) >= rank(Rejection::self_collision) && !hand_checked_) {
+    hand_checked_ = true;
     const Rejection hand = hand_.rejection(target_);
     if (hand != Rejection::none) {
       out_of_reach_ = true;

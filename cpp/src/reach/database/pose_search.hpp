@@ -58,7 +58,7 @@ class PoseSearch {
   Rigid motion_;
   std::uint64_t number_ = 0;
   Rejection cause_ = Rejection::unreachable;
-  bool out_of_reach_ = false, hand_asked_ = false;
+  bool out_of_reach_ = false, hand_checked_ = false;
   int sample_ = -1;
   std::array<double, 3> outside_{};        ///< How far the nearest branches outside stuck out [rad] ...
   std::array<Eigen::VectorXd, 3> nearly_;  ///< ... and these, clamped.

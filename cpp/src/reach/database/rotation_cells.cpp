@@ -10,7 +10,7 @@ namespace mmgrasp::detail {
 namespace {
 
 /// Turns v by the smallest rotation that takes unit `from` to unit `to`; undefined for opposite vectors.
-Eigen::Vector3d carry(const Eigen::Vector3d& v, const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+Eigen::Vector3d transport(const Eigen::Vector3d& v, const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   const Eigen::Vector3d w = from.cross(to), wv = w.cross(v);
   return v + wv + w.cross(wv) / (1 + from.dot(to));
 }
@@ -58,7 +58,7 @@ void RotationCells::add_cell(std::uint32_t face, std::uint32_t i, std::uint32_t 
   sides_.push_back(sides);
   centres_.push_back(centre);
   half_radius_tangents_.push_back(std::tan(radius / 2));
-  roll_zero_.push_back(carry(Eigen::Vector3d::Unit((face / 2 + 1) % 3), face_normal(face), centre));
+  roll_zero_.push_back(transport(Eigen::Vector3d::Unit((face / 2 + 1) % 3), face_normal(face), centre));
 }
 
 void RotationCells::add_neighbours(std::uint32_t cell) {
@@ -97,7 +97,7 @@ std::uint32_t RotationCells::direction_id(const Eigen::Vector3d& direction) cons
 
 double RotationCells::roll_at(const Eigen::Matrix3d& R, std::uint32_t direction) const {
   const Eigen::Vector3d &centre = centres_[direction], &zero = roll_zero_[direction];
-  const Eigen::Vector3d x = carry(R.col(0), R.col(2), centre);
+  const Eigen::Vector3d x = transport(R.col(0), R.col(2), centre);
   const double roll = std::atan2(x.dot(centre.cross(zero)), x.dot(zero));
   return (roll / kTwoPi + 0.5) * rolls_;
 }

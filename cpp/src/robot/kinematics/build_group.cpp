@@ -171,9 +171,9 @@ JointGroup Robot::group(const std::string& name, const std::string& tip, bool wi
   }
   const int tip_link = link_index(tip);
   // A tree (a hand, two arms) may take its tip anywhere below any of its joints, a chain below its last one.
-  const auto carries = [&](int joint) { return hangs_from(*this, tip_link, joint + 1); };
-  const bool ok = joints.empty() || (group.tip_link.empty() ? std::any_of(joints.begin(), joints.end(), carries)
-                                                            : carries(joints.back()));
+  const auto moves_tip = [&](int joint) { return hangs_from(*this, tip_link, joint + 1); };
+  const bool ok = joints.empty() || (group.tip_link.empty() ? std::any_of(joints.begin(), joints.end(), moves_tip)
+                                                            : moves_tip(joints.back()));
   if (!ok)
     throw InvalidInput("tip = \"" + tip + "\": must be carried by the last joint of group \"" + name + "\" (\"" +
                        group.joints.back() + "\")");

@@ -81,7 +81,7 @@ std::string RobotMotion::to_csv() const {
   for (const char* suffix : {"", ".velocity", ".acceleration"})
     for (const std::string& name : joints) text += "," + name + suffix;
   text += gripper.empty() ? "\n" : ",gripper\n";
-  std::size_t told = 0;
+  std::size_t next_event = 0;
   for (std::size_t i = 0; i < times.size(); ++i) {
     std::string row;
     append_values(row, &times[i], 1);
@@ -91,9 +91,10 @@ std::string RobotMotion::to_csv() const {
       append_values(row, (*rows)[i].data(), (*rows)[i].size());
     text.append(row, 1);
     if (!gripper.empty()) text += ',';
-    for (bool first = true; told < gripper.size() && (gripper[told].time <= times[i] || i + 1 == times.size());
-         ++told, first = false)
-      text += std::string(first ? "" : " ") + (gripper[told].closes ? "close" : "open");
+    for (bool first = true;
+         next_event < gripper.size() && (gripper[next_event].time <= times[i] || i + 1 == times.size());
+         ++next_event, first = false)
+      text += std::string(first ? "" : " ") + (gripper[next_event].closes ? "close" : "open");
     text += '\n';
   }
   return text;

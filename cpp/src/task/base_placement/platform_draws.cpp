@@ -123,8 +123,8 @@ std::optional<Eigen::VectorXd> PlatformEnd::solve(const Eigen::VectorXd& start, 
 
 bool PlatformEnd::draw(const IkSeedDatabase* database) {
   constexpr int kRemembered = 64;
-  if (!asked_ && database) remembered_ = database->seeds(T_world_tip_, kRemembered);
-  asked_ = true;
+  if (!queried_ && database) remembered_ = database->seeds(T_world_tip_, kRemembered);
+  queried_ = true;
   Rng rng(seed_, 2 * counts.draws + stream_);
   Eigen::VectorXd start;
   // Every fourth start is new, so that the database keeps learning.

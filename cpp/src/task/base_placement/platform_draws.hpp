@@ -47,7 +47,7 @@ class PlatformEnd {
   IkOptions descent_, slide_;
   std::vector<Eigen::VectorXd> remembered_;
   std::size_t next_remembered_ = 0;
-  bool asked_ = false;
+  bool queried_ = false;
   Eigen::VectorXd lower_, upper_;  // where starts are drawn
   std::uint64_t seed_, stream_;
 };

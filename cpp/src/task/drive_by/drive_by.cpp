@@ -1,6 +1,8 @@
 #include "mmgrasp/task/drive_by.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
@@ -21,6 +23,17 @@ using Eigen::VectorXd;
 
 constexpr int kShortBudget = 40;       // iterations of a solve in the first round
 constexpr std::size_t kMoreSeeds = 2;  // sequences tried of each assignment once there is a motion to beat
+
+/// What blocks most of the configurations that reach a task: "; in 12 of 30 that do 'hand' touches 'table'".
+std::string most_frequent_contact(CollisionChecker& checker, const GoalConfigurations& in_reach) {
+  std::map<std::string, std::size_t> count;
+  for (const GoalConfiguration& configuration : in_reach)
+    for (const Contact& contact : checker.contacts(configuration.q)) ++count[describe(contact)];
+  if (count.empty()) return {};
+  const auto most =
+      std::max_element(count.begin(), count.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  return "; in " + std::to_string(most->second) + " of " + std::to_string(in_reach.size()) + " that do " + most->first;
+}
 
 /// One plan: keeps what all seeds share.
 class DriveBy {
@@ -100,10 +113,10 @@ class DriveBy {
       const VectorXd before = rough_configuration(static_cast<int>(i) - 1, goal),
                      after = rough_configuration(static_cast<int>(i) + 1, goal);
       CollisionChecker* checker = scene_states_ ? &scene_states_->before(i) : nullptr;
-      const auto configurations = [&](CollisionChecker* asked) {
+      const auto configurations = [&](CollisionChecker* checker) {
         return steps_[i].way > 0
-                   ? detail::follow_goal_configurations(group_, asked, steps_[i], goals.at(i - 1), monitor_)
-                   : detail::find_goal_configurations(group_, asked, steps_[i], before, after, options_,
+                   ? detail::follow_goal_configurations(group_, checker, steps_[i], goals.at(i - 1), monitor_)
+                   : detail::find_goal_configurations(group_, checker, steps_[i], before, after, options_,
                                                       static_cast<unsigned>(i), monitor_);
       };
       goals.push_back(configurations(checker));
@@ -113,8 +126,7 @@ class DriveBy {
                 std::to_string(options_.goal_configurations) + " tries at a time)";
       if (!checker) return {};
       const GoalConfigurations in_reach = configurations(nullptr);
-      const auto contact = in_reach.empty() ? std::nullopt : checker->first_contact(in_reach.front().q);
-      if (contact) missing += "; in the likeliest one " + describe(*contact);
+      missing += most_frequent_contact(*checker, in_reach);
       return {};
     }
     const auto collisions = [&](const ConfigurationSequence& sequence) { return solver_->collisions(sequence); };

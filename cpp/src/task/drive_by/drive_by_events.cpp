@@ -41,7 +41,7 @@ std::vector<DriveByEvent> events_of(const WholeBodyTrajectory& t, const World& w
     if (!steps[i].object.empty()) {
       e.object = steps[i].object;
       const Pose& T_world_object = world.objects().at(e.object).T_world_object;
-      e.T_tip_object = held_pose(steps[i], t.group().fk(t.positions()[at]), T_world_object);
+      e.T_tip_object = attached_pose(steps[i], t.group().fk(t.positions()[at]), T_world_object);
       e.held_time = t.times()[at + (steps[i].dwell > 0 ? dwell_intervals(steps[i].dwell) : 0)];
     }
     e.candidate = sequence[i].candidate;

@@ -56,22 +56,22 @@ CollisionChecker SceneStates::holding(std::size_t step, const Eigen::VectorXd& q
   const std::string& object = tasks_[step].object;
   const std::string& tip = group_.robot().links()[group_.tip_link()].name;
   const Pose T_world_object = world_.objects().at(object).T_world_object;
-  const auto held_at = [&](const Pose& T_world_standing) {
+  const auto attached_at = [&](const Pose& T_world_standing) {
     World world = left(step);
-    world.attach(object, tip, held_pose(tasks_[step], group_.fk(q), T_world_standing));
+    world.attach(object, tip, attached_pose(tasks_[step], group_.fk(q), T_world_standing));
     return CollisionChecker(group_, world);
   };
-  CollisionChecker checker = held_at(T_world_object);
+  CollisionChecker checker = attached_at(T_world_object);
   const std::vector<Contact> contacts = checker.contacts(q);
   const bool rests =
       std::any_of(contacts.begin(), contacts.end(), [&](const Contact& c) { return c.a == object || c.b == object; });
-  if (rests) return held_at(Eigen::Translation3d(0, 0, kResting) * T_world_object);
+  if (rests) return attached_at(Eigen::Translation3d(0, 0, kResting) * T_world_object);
   return checker;
 }
 
 std::vector<CollisionChecker*> SceneStates::along(const std::vector<int>& intervals,
                                                   const ConfigurationSequence& sequence) {
-  held_.clear();
+  attached_.clear();
   std::vector<CollisionChecker*> result;
   for (std::size_t s = 0; s < intervals.size(); ++s) {
     CollisionChecker* here = &before(s);
@@ -79,7 +79,7 @@ std::vector<CollisionChecker*> SceneStates::along(const std::vector<int>& interv
     std::size_t by = s;
     while (by > 0 && tasks_[by - 1].object.empty() && !tasks_[by - 1].begins) --by;
     if (by > 0 && !tasks_[by - 1].object.empty())
-      here = &held_.try_emplace(s, holding(by - 1, sequence[by - 1].q)).first->second;
+      here = &attached_.try_emplace(s, holding(by - 1, sequence[by - 1].q)).first->second;
     result.insert(result.end(), intervals[s], here);
   }
   return result;

@@ -26,7 +26,7 @@ class SceneStates {
   World left(std::size_t task) const;  ///< Without the parts of tasks before this one.
   /// With the part of a step in the hand, as it was taken in this configuration.
   CollisionChecker holding(std::size_t step, const Eigen::VectorXd& q) const;
-  std::map<std::size_t, CollisionChecker> before_, at_, held_;
+  std::map<std::size_t, CollisionChecker> before_, at_, attached_;
 };
 
 }  // namespace mmgrasp::detail

@@ -108,7 +108,7 @@ void check_tasks(const std::vector<DriveByTask>& tasks, const World& world) {
   }
 }
 
-Pose held_pose(const DriveByStep& step, const Pose& T_world_tip, const Pose& T_world_object) {
+Pose attached_pose(const DriveByStep& step, const Pose& T_world_tip, const Pose& T_world_object) {
   const Eigen::Vector3d nearer = -step.insertion_distance * step.sign * Eigen::Vector3d::Unit(step.axis);
   return Eigen::Translation3d(nearer) * (T_world_tip.inverse() * T_world_object);
 }

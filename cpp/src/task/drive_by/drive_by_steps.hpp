@@ -25,7 +25,7 @@ std::vector<DriveByStep> steps_of(const std::vector<DriveByTask>& tasks);
 void check_tasks(const std::vector<DriveByTask>& tasks, const World& world);
 
 /// T_tip_object of the step's object once it moves with the tip, which is at T_world_tip at the step.
-Pose held_pose(const DriveByStep& step, const Pose& T_world_tip, const Pose& T_world_object);
+Pose attached_pose(const DriveByStep& step, const Pose& T_world_tip, const Pose& T_world_object);
 
 /// Bounds on the tool at the step's own waypoint.
 ToolConstraint constraint_at(const DriveByStep& step, int candidate, int waypoint);

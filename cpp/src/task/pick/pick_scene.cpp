@@ -12,8 +12,8 @@ constexpr double kOpeningStep = 0.004;  // [m] between two checks of moving fing
 
 }  // namespace
 
-PickScene::PickScene(const PickProblem& problem) : problem_(problem), gone_(problem.world) {
-  gone_.remove(problem.object);
+PickScene::PickScene(const PickProblem& problem) : problem_(problem), removed_(problem.world) {
+  removed_.remove(problem.object);
 }
 
 JointGroup PickScene::arm(double opening) const {
@@ -39,7 +39,7 @@ CollisionChecker& PickScene::before(double opening) {
   return kept(before_, problem_.world, opening);
 }
 CollisionChecker& PickScene::after(double opening) {
-  return kept(after_, gone_, opening);
+  return kept(after_, removed_, opening);
 }
 
 CollisionChecker PickScene::holding(double opening, const Pose& T_hand_object) const {

@@ -30,7 +30,7 @@ class PickScene {
   JointGroup arm(double opening) const;
 
   const PickProblem& problem_;
-  World gone_;
+  World removed_;
   Checkers before_, after_;
 };
 

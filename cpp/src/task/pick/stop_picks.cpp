@@ -27,10 +27,10 @@ std::vector<PartRef> first_order(const PartSupplyProblem& problem, const Eigen::
   return order;
 }
 
-std::vector<PartRef> without(const std::vector<PartRef>& parts, const std::set<PartRef>& gone) {
+std::vector<PartRef> without(const std::vector<PartRef>& parts, const std::set<PartRef>& removed) {
   std::vector<PartRef> left;
   for (const PartRef& id : parts) {
-    if (!gone.count(id)) left.push_back(id);
+    if (!removed.count(id)) left.push_back(id);
   }
   return left;
 }
@@ -45,11 +45,11 @@ StopPicks plan_stop_picks(const PartSupplyProblem& problem, const ReachDatabase&
   std::map<PartRef, std::pair<std::set<PartRef>, Pick>> known;  // with the parts that were gone when it was planned
   for (int round = 0; round < kRounds; ++round) {
     std::vector<std::pair<PartRef, std::set<PartRef>>> open;
-    std::set<PartRef> gone;
+    std::set<PartRef> removed;
     for (const PartRef& id : order) {
       const auto found = known.find(id);
-      if (found == known.end() || found->second.first != gone) open.emplace_back(id, gone);
-      gone.insert(id);
+      if (found == known.end() || found->second.first != removed) open.emplace_back(id, removed);
+      removed.insert(id);
     }
     std::vector<Pick> planned(open.size());
     const bool done = parallel_for(

@@ -8,8 +8,19 @@ import pytest
 
 from odd_scenarios import odd_scenario, try_out
 
-# 33 carries a bushing of 38 cm straight up: its accelerations were those of no interval.
-SEEDS = [1, 2, 3, 4, 5, 6, 33]
+# The first 561 were tried. These were called solved and refused by their own check:
+BROKE = {
+    33: "solved",  # a bushing of 38 cm goes straight up: sampled accelerations were those of no interval
+    58: "refused",  # fingers whose strokes differ
+    66: "solved",  # accelerations that swing away and back between two samples
+    133: "solved",  # the check's search missed grasps that are there
+    176: "refused",  # parts inside a wall
+    277: "refused",  # a finger that does not close
+    306: "solved",  # a heading listed twice, on both sides of half a turn
+    388: "solved",  # as 133, in a region
+    477: "solved",  # blocks that touch the tray's walls
+}
+SEEDS = [1, 2, 3, 4, 5, 6, *BROKE]
 
 
 @pytest.mark.slow
@@ -19,5 +30,5 @@ def test_solved_plans_hold(tmp_path: Path) -> None:
         outcome, faults = try_out(odd_scenario(seed), tmp_path)
         assert not faults, f"odd_scenario({seed})"
         outcomes[seed] = outcome
-    assert outcomes[33] == "solved"
+    assert {seed: outcomes[seed] for seed in BROKE} == BROKE
     assert sum(outcome == "solved" for outcome in outcomes.values()) >= 4, outcomes

@@ -145,6 +145,13 @@ BAD = [
     ("name", "\x1b[31mred", ["name", "control characters"]),
     ("trays.0.name", "x" * 5000, ["trays[0].name", "at most 200 characters"]),
     ("trays.0.parts.spacing", [0.02, 0.08], ["trays[0].parts", "overlaps part"]),
+    ("trays.0.pose.xyz", [2.85, -1.3, 0.706], ["trays[0].parts", "A/", "overlaps wall east"]),
+    (
+        "gripper.joints.0.closed",
+        0.02,
+        ["gripper.joints", "left_gripper_finger_link moves 0.03 m", "half of max_opening, 0.05 m"],
+    ),
+    ("gripper.max_opening", 0.08, ["gripper.joints", "moves 0.05 m", "half of max_opening, 0.04 m"]),
     ("start", [2.8, -0.7, 0], ["start", "in collision", "touches"]),
     ("goal", [2.8, -0.7, 0], ["goal", "in collision", "touches"]),
 ]

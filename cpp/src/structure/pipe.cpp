@@ -115,10 +115,10 @@ std::vector<LinkShape> Pipe::shapes(PipeEnds ends) const {
   if (ends == PipeEnds::round) return out;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     if (meeting[i] < 2) continue;
-    LinkShape ball;
-    ball.shape = Sphere{widest[i]};
-    ball.T_link_shape.translation() = nodes[i];
-    out.push_back(ball);
+    LinkShape joint_sphere;
+    joint_sphere.shape = Sphere{widest[i]};
+    joint_sphere.T_link_shape.translation() = nodes[i];
+    out.push_back(joint_sphere);
   }
   return out;
 }

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "verify/context.hpp"
-#include "verify/kdl_pose.hpp"
+#include "verify/robot/kdl_pose.hpp"
 
 namespace mmgrasp::verify::detail {
 namespace {

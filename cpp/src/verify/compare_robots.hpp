@@ -1,7 +1,7 @@
 #pragma once
 
 #include "mmgrasp/verify/plan_check.hpp"
-#include "verify/robot_model.hpp"
+#include "verify/robot/robot_model.hpp"
 
 namespace mmgrasp::verify::detail {
 

@@ -135,13 +135,13 @@ void Judge::set_present(std::size_t body, bool present) {
 
 void Judge::hold(std::size_t body, const Pose& T_tip_body) {
   present_[body] = false;
-  held_ = static_cast<int>(body);
-  held_body_ = stage_->bodies[body];
-  T_tip_held_ = T_tip_body;
+  attached_ = static_cast<int>(body);
+  attached_body_ = stage_->bodies[body];
+  T_tip_attached_ = T_tip_body;
 }
 
 void Judge::drop() {
-  held_ = -1;
+  attached_ = -1;
 }
 
 void Judge::place(const Eigen::VectorXd& arm, double opening) {
@@ -157,7 +157,7 @@ void Judge::place(const Eigen::VectorXd& arm, double opening) {
       link_bounds_[link].extend(solid_bounds_[link][i]);
     }
   }
-  if (held_ >= 0) place_solids(held_body_, T_world_root_ * links[stage_->setup.tip_link] * T_tip_held_);
+  if (attached_ >= 0) place_solids(attached_body_, T_world_root_ * links[stage_->setup.tip_link] * T_tip_attached_);
 }
 
 bool Judge::link_touches(int link, const Solid& solid, const Pose& T, const Bounds& bounds) const {
@@ -203,23 +203,23 @@ Touch Judge::scene_touch() const {
   return {};
 }
 
-Touch Judge::held_touch() const {
-  for (std::size_t i = 0; i < held_body_.solids.size(); ++i) {
-    const Solid& solid = held_body_.solids[i];
+Touch Judge::attached_touch() const {
+  for (std::size_t i = 0; i < attached_body_.solids.size(); ++i) {
+    const Solid& solid = attached_body_.solids[i];
     for (const int link : solid_links_) {
-      if (stage_->is_finger[link] || stage_->may_touch(stage_->robot->links[link].name, held_body_.name)) continue;
-      if (link_touches(link, solid, held_body_.T_world_shape[i], held_body_.bounds[i])) {
-        return {TouchKind::held, held_body_.name, stage_->robot->links[link].name};
+      if (stage_->is_finger[link] || stage_->may_touch(stage_->robot->links[link].name, attached_body_.name)) continue;
+      if (link_touches(link, solid, attached_body_.T_world_shape[i], attached_body_.bounds[i])) {
+        return {TouchKind::attached, attached_body_.name, stage_->robot->links[link].name};
       }
     }
     for (std::size_t index = 0; index < stage_->bodies.size(); ++index) {
       const PlacedBody& body = stage_->bodies[index];
-      if (!present_[index] || !held_body_.bounds[i].intersects(body.total)) continue;
-      if (stage_->may_touch(held_body_.name, body.name)) continue;
+      if (!present_[index] || !attached_body_.bounds[i].intersects(body.total)) continue;
+      if (stage_->may_touch(attached_body_.name, body.name)) continue;
       for (std::size_t j = 0; j < body.solids.size(); ++j) {
-        if (held_body_.bounds[i].intersects(body.bounds[j]) &&
-            touches(solid, held_body_.T_world_shape[i], body.solids[j], body.T_world_shape[j])) {
-          return {TouchKind::held, held_body_.name, body.name};
+        if (attached_body_.bounds[i].intersects(body.bounds[j]) &&
+            touches(solid, attached_body_.T_world_shape[i], body.solids[j], body.T_world_shape[j])) {
+          return {TouchKind::attached, attached_body_.name, body.name};
         }
       }
     }
@@ -231,17 +231,18 @@ Touch Judge::touch(const Eigen::VectorXd& arm, double opening) {
   place(arm, opening);
   if (Touch found = self_touch()) return found;
   if (Touch found = scene_touch()) return found;
-  return held_ >= 0 ? held_touch() : Touch{};
+  return attached_ >= 0 ? attached_touch() : Touch{};
 }
 
-int Judge::fingers_touching_held(const Eigen::VectorXd& arm, double opening) {
+int Judge::fingers_touching_attached(const Eigen::VectorXd& arm, double opening) {
   place(arm, opening);
-  if (held_ < 0) return 0;
+  if (attached_ < 0) return 0;
   int touching = 0;
   for (const int link : solid_links_) {
     if (!stage_->is_finger[link]) continue;
-    for (std::size_t i = 0; i < held_body_.solids.size(); ++i) {
-      if (!link_touches(link, held_body_.solids[i], held_body_.T_world_shape[i], held_body_.bounds[i])) continue;
+    for (std::size_t i = 0; i < attached_body_.solids.size(); ++i) {
+      if (!link_touches(link, attached_body_.solids[i], attached_body_.T_world_shape[i], attached_body_.bounds[i]))
+        continue;
       ++touching;
       break;
     }

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "mmgrasp/verify/plan_check.hpp"
-#include "verify/kinematics.hpp"
-#include "verify/robot_model.hpp"
-#include "verify/solid.hpp"
+#include "verify/robot/kinematics.hpp"
+#include "verify/robot/robot_model.hpp"
+#include "verify/robot/solid.hpp"
 
 namespace mmgrasp::verify::detail {
 
@@ -45,7 +45,7 @@ struct Stage {
 Stage make_stage(std::shared_ptr<const RobotModel> robot, const ArmSetup& setup, const std::vector<int>& finger_links,
                  const std::vector<CheckedPair>& allowed);
 
-enum class TouchKind { none, self, scene, held };
+enum class TouchKind { none, self, scene, attached };
 
 struct Touch {
   TouchKind kind = TouchKind::none;
@@ -71,7 +71,7 @@ class Judge {
 
   Touch touch(const Eigen::VectorXd& arm, double opening);
   /// How many finger links touch the held body.
-  int fingers_touching_held(const Eigen::VectorXd& arm, double opening);
+  int fingers_touching_attached(const Eigen::VectorXd& arm, double opening);
   Pose tip(const Eigen::VectorXd& arm) { return T_world_root_ * kinematics_.tip(arm); }
   std::size_t queries() const { return queries_; }
 
@@ -80,7 +80,7 @@ class Judge {
   void find_near_bodies();
   Touch self_touch() const;
   Touch scene_touch() const;
-  Touch held_touch() const;
+  Touch attached_touch() const;
   bool link_touches(int link, const Solid& solid, const Pose& T, const Bounds& bounds) const;
 
   std::shared_ptr<const Stage> stage_;
@@ -92,9 +92,9 @@ class Judge {
   std::vector<std::vector<Bounds>> solid_bounds_;
   std::vector<Bounds> link_bounds_;
   std::vector<int> solid_links_;  ///< Links that have solids.
-  int held_ = -1;
-  Pose T_tip_held_ = Pose::Identity();
-  PlacedBody held_body_;
+  int attached_ = -1;
+  Pose T_tip_attached_ = Pose::Identity();
+  PlacedBody attached_body_;
   std::size_t queries_ = 0;
 };
 

@@ -294,7 +294,7 @@ def _read_gripper(node: Node, robot: Robot, tool_link: str) -> Hand:
     if "clearance" in node:
         sizes["clearance"] = node["clearance"].number(least=0)
     axes = _axes(node)
-    return Hand(
+    hand = Hand(
         tool_link,
         approach=axes["approach"],
         closing=axes["closing"],
@@ -302,6 +302,22 @@ def _read_gripper(node: Node, robot: Robot, tool_link: str) -> Hand:
         finger_links=[link.raw for link in node["finger_links"].elements()],
         **sizes,
     )
+    _check_finger_travel(node["joints"], robot, hand)
+    return hand
+
+
+def _check_finger_travel(node: Node, robot: Robot, hand: Hand) -> None:
+    """Both fingers meet a part at once: each that slides along `closing` goes half of the opening."""
+    ends = [robot.link_poses(hand.joint_values(opening)) for opening in (0.0, hand.max_opening)]
+    for link in hand.finger_links:
+        closed, opened = (np.linalg.inv(poses[hand.tool_link]) @ poses[link] for poses in ends)
+        travel = abs(hand.closing @ (opened - closed)[:3, 3])
+        slides = np.allclose(opened[:3, :3], closed[:3, :3], atol=1e-9) and travel > 1e-9
+        if slides and abs(travel - hand.max_opening / 2) > 1e-3:
+            node.fail(
+                f"{link} moves {travel:.4g} m along closing between closed and open: must be half of max_opening, "
+                f"{hand.max_opening / 2:.4g} m, so that both fingers meet the part at once"
+            )
 
 
 def _axes(node: Node) -> dict[str, Any]:

@@ -147,7 +147,7 @@ def load_scenario(
     rules = read_contact_rules(
         root, setup.robot, [o.name for o in obstacles], [p.name for t in trays for p in t.tray.parts]
     )
-    _check_apart(root["trays"], trays)
+    _check_apart(root["trays"], trays, obstacles)
     if seed is not None:
         options["seed"] = seed
     if threads is not None:
@@ -225,8 +225,8 @@ def _check_names(root: Node, obstacles: list[Obstacle], trays: list[TraySetup]) 
         seen.add(name)
 
 
-def _check_apart(node: Node, trays: list[TraySetup]) -> None:
-    """No two trays in one place, and no two parts."""
+def _check_apart(node: Node, trays: list[TraySetup], obstacles: list[Obstacle]) -> None:
+    """No two trays in one place, no two parts, and no part in an obstacle or a wall of a tray."""
     walls = [checks.CheckedBody(f"tray {t.tray.name}", t.walls, t.tray.T_world_tray) for t in trays]
     for i, j in checks.overlapping_bodies(walls):
         node.elements()[j].fail(f"overlaps tray {trays[i].tray.name}")
@@ -234,6 +234,13 @@ def _check_apart(node: Node, trays: list[TraySetup]) -> None:
     parts = [part for t in trays for part in t.tray.parts]
     for i, j in checks.overlapping_bodies([checks.CheckedBody(p.name, p.shapes, p.T_world_part) for p in parts]):
         node.elements()[owners[j]]["parts"].fail(f"part {parts[j].name} overlaps part {parts[i].name}")
+    room = [checks.CheckedBody(o.name, o.shapes, o.pose) for o in obstacles]
+    typed = [(k, part) for k, t in enumerate(trays) if t.scan is None for part in t.tray.parts]
+    bodies = [checks.CheckedBody(part.name, part.shapes, part.T_world_part) for _, part in typed]
+    for i, j in checks.overlapping_bodies(room + bodies) if bodies else []:
+        if i < len(room) <= j:
+            k, part = typed[j - len(room)]
+            node.elements()[k]["parts"].fail(f"part {part.name} overlaps {obstacles[i].name} by more than 0.1 mm")
 
 
 def _check_stands_free(node: Node, scenario: Scenario) -> None:

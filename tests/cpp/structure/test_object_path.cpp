@@ -121,7 +121,7 @@ TEST(ObjectPath, SingleConfigurationsNeverCostLess) {
     if (b.outcome != Outcome::solved) continue;
     ASSERT_EQ(a.outcome, Outcome::solved);
     ++both;
-    EXPECT_LE(a.cost, b.cost * (1 + 1e-8));  // descents end within 1e-9 of a branch
+    EXPECT_LE(a.cost, b.cost * (1 + 1e-12));
     dearer += b.cost > 1.001 * a.cost;
   }
   EXPECT_GT(both, 10);

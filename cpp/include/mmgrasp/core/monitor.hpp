@@ -10,6 +10,10 @@
 namespace mmgrasp {
 
 /// Shared flag that ends long calls early; copies refer to the same flag. Safe to set from any thread.
+///
+///     Monitor monitor;
+///     std::thread watch([stop = monitor.stop]() mutable { if (user_gave_up()) stop.stop(); });
+///     plan_motion(checker, start, {goal}, {}, monitor);  // ends soon after, with Outcome::stopped
 class MMGRASP_EXPORT CancelToken {
  public:
   CancelToken() : flag_(std::make_shared<std::atomic<bool>>(false)) {}

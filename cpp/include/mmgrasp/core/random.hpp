@@ -10,6 +10,8 @@ namespace mmgrasp {
 
 /// Small deterministic generator (xoshiro256**, seeded by splitmix64): the same numbers on every platform.
 /// `stream` gives independent sequences of one seed, so that work item i draws the same numbers at any thread count.
+///
+///     parallel_for(items, threads, [&](std::size_t i, int) { Rng rng(seed, i); use(rng.uniform(lower, upper)); });
 class MMGRASP_EXPORT Rng {
  public:
   explicit Rng(std::uint64_t seed, std::uint64_t stream = 0);

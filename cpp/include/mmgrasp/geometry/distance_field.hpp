@@ -28,6 +28,10 @@ struct MMGRASP_EXPORT DistanceFieldProperties {
 /// Signed distance from the surface of a body, in the field's own frame: negative inside, positive outside [m]. The
 /// common face of exact meshes and of maps, for those who ask how far away something is.
 ///
+///     const MeshDistanceField field(mesh);
+///     Eigen::Matrix3Xd gradients;
+///     const Eigen::VectorXd distances = field.distances(points, gradients);
+///
 /// Many points are one call, and one virtual call. What a field does not know (outside its domain, or a cell that no
 /// camera saw) is NaN, with gradient zero: whether that counts as free is the asker's decision. Const members may be
 /// called from several threads at once.

@@ -21,6 +21,9 @@ struct MMGRASP_EXPORT FingerPad {
 
 /// Where a hand's pads and bodies are at any posture, in its tool frame: what grasp synthesis asks of a hand, whether
 /// it is a parallel gripper or has many joints. `shares` say how far each closing group is open, in [0, 1].
+///
+///     const std::shared_ptr<const HandModel> model = make_hand_model(hand);
+///     for (const FingerPad& pad : model->pads(std::vector<double>(model->groups(), 0.5))) draw(pad);
 class MMGRASP_EXPORT HandModel {
  public:
   virtual ~HandModel() = default;

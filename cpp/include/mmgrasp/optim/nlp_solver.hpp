@@ -37,6 +37,9 @@ struct MMGRASP_EXPORT NlpResult {
 
 /// Local solver of smooth problems. Callbacks that throw end the solve, and the exception reaches the caller; numbers
 /// that are not finite never do harm. The cancel token ends it at the next evaluation.
+///
+///     const NlpResult found = make_nlp_solver("ipopt")->solve(problem, guess);
+///     if (found.outcome == Outcome::solved) use(found.x);
 class MMGRASP_EXPORT NlpSolver {
  public:
   virtual ~NlpSolver();

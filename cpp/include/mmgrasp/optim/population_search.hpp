@@ -82,6 +82,8 @@ struct MMGRASP_EXPORT PopulationResult {
 };
 
 /// A population that moves towards better points. Ties go to the earlier point, so answers depend on the seed alone.
+///
+///     const PopulationResult found = make_population_search("bees")->solve(problem);
 class MMGRASP_EXPORT PopulationSearch {
  public:
   virtual ~PopulationSearch();

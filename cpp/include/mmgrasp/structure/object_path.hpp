@@ -85,6 +85,9 @@ struct MMGRASP_EXPORT ObjectPathResult {
 /// least cost is found by dynamic programming, from all first configurations at once. Collisions are checked only along
 /// the best sequence so far; what collides leaves and the next best is found, so the answer is that of checking
 /// everything. Not thread-safe; clones share nothing.
+///
+///     ObjectPathEvaluator evaluator(problem);
+///     for (const Grasp& grasp : grasps) keep_best(grasp, evaluator.evaluate(grasp));
 class MMGRASP_EXPORT ObjectPathEvaluator {
  public:
   ObjectPathEvaluator(const ObjectPathProblem& problem, const ObjectPathOptions& options = {});

@@ -19,6 +19,10 @@ namespace mmgrasp {
 
 /// Past solutions that seed the next IK searches (P3 3.6): grows with use, can be saved, belongs to one group. When
 /// full, the oldest are removed. Threads may share one; what it answers then depends on who came first.
+///
+///     IkSeedDatabase database(group);
+///     database.add(q);  // a solution found elsewhere
+///     for (const Eigen::VectorXd& seed : database.seeds(T_world_tip, 5)) try_from(seed);
 class MMGRASP_EXPORT IkSeedDatabase {
  public:
   /// The group must have base joints; capacity > 0. Throws InvalidInput.

@@ -11,6 +11,9 @@
 namespace mmgrasp {
 
 /// Waypoints of base and arm on one clock. Between them drive velocities (see drive_names) are linear in time.
+///
+///     const WholeBodyTrajectory& motion = *plan_drive_by(group, world, start, tasks, goal).trajectory;
+///     for (double t = 0; t < motion.duration(); t += 0.01) command(motion.at(t), motion.drive_at(t));
 class MMGRASP_EXPORT WholeBodyTrajectory {
  public:
   WholeBodyTrajectory(const JointGroup& group, std::vector<double> times, std::vector<Eigen::VectorXd> positions,

@@ -14,6 +14,7 @@ namespace {
 constexpr double kJump = 0.004;          // Acceleration jumps above this part of a limit get a sample of their own.
 constexpr double kSmallestGap = 1e-5;    // Least time between samples at jumps [s].
 constexpr double kSmallestSplit = 2e-4;  // Shorter intervals are not halved [s].
+constexpr double kUntold = 0.5;  // Part of a limit by which a mean acceleration may lie beyond those at both ends.
 
 using State = PathTiming::State;
 
@@ -63,6 +64,18 @@ class Sampler {
     return times;
   }
 
+  /// Where the acceleration swings away and back within an interval, the ends do not tell: their velocities differ by
+  /// what neither acceleration accounts for.
+  bool hides_acceleration(const Sample& a, const Sample& b) const {
+    for (Eigen::Index j = 0; j < acceleration_limits_.size(); ++j) {
+      const double mean = (b.state.velocity[j] - a.state.velocity[j]) / (b.time - a.time);
+      const double first = a.state.acceleration[j], second = b.state.acceleration[j];
+      const double beyond = std::max(mean - std::max(first, second), std::min(first, second) - mean);
+      if (beyond > kUntold * acceleration_limits_[j]) return true;
+    }
+    return false;
+  }
+
   /// Appends the sample at `time`, after those that keep the cubics in between within limits.
   void append(double time) { append({time, timing_.at(time)}); }
   void append(Sample sample) {
@@ -70,7 +83,8 @@ class Sampler {
     const Sample& previous = samples_.back();
     const double gap = sample.time - previous.time;
     const Load load = hermite_load(previous, sample);
-    if (std::max(load.velocity, load.acceleration) > 1 && gap > kSmallestSplit) {
+    const bool beyond = std::max(load.velocity, load.acceleration) > 1;
+    if ((beyond || hides_acceleration(previous, sample)) && gap > kSmallestSplit) {
       append(previous.time + 0.5 * gap);
       append(std::move(sample));
       return;

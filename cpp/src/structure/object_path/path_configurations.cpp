@@ -160,7 +160,7 @@ PathConfigurations::Layer PathConfigurations::single(const Pose& T_world_hand, c
   forces_.clear();
   rejections_ = {};
   IkOptions options;
-  options.position_tolerance = options.rotation_tolerance = 1e-9;  // as exact as branches are
+  options.position_tolerance = options.rotation_tolerance = 1e-13;  // as exact as branches are
   IkWorkspace workspace;
   IkStarts starts(group_, T_world_hand, options.seed);
   VectorXd q = seed;

@@ -49,8 +49,9 @@ void RegionSearch::add_windows(TrayId id, const ReachDatabase& database) {
   const double radius = base_search_radius(*problem_, tray, database);
   const Eigen::Vector2d middle = tray.T_world_tray.translation().head<2>();
   for (double wanted : tray_headings(tray)) {
-    const auto heading = std::find_if(grid_.headings.begin(), grid_.headings.end(),
-                                      [&](double known) { return std::abs(wrap_angle(known - wanted)) < 1e-9; });
+    const auto heading = std::find_if(grid_.headings.begin(), grid_.headings.end(), [&](double known) {
+      return std::abs(wrap_angle(known - wanted)) < kSameHeading;
+    });
     if (heading == grid_.headings.end()) continue;  // a grid made by hand may leave it out
     windows_.emplace_back(id, static_cast<int>(heading - grid_.headings.begin()), targets, grid_, middle, radius);
   }

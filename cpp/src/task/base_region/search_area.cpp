@@ -3,11 +3,6 @@
 #include <cmath>
 
 namespace mmgrasp::detail {
-namespace {
-
-constexpr double kSameHeading = 1e-9;  // [rad]
-
-}  // namespace
 
 void add_heading(std::vector<double>& headings, double heading) {
   for (double known : headings) {

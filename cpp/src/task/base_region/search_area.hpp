@@ -9,7 +9,10 @@ namespace mmgrasp::detail {
 /// The tray's headings without repetitions; the facing one when it lists none.
 std::vector<double> tray_headings(const Tray& tray);
 
-/// Adds a heading unless the list has it, up to full turns and rounding.
+/// Headings closer than this are one, as for verify [rad].
+constexpr double kSameHeading = 1e-6;
+
+/// Adds a heading unless the list has it, up to full turns and kSameHeading.
 void add_heading(std::vector<double>& headings, double heading);
 
 /// Base poses farther than this from the tray's middle are not tried [m].

@@ -54,7 +54,7 @@ double reach_deficit(const PartSupplyProblem& problem, const ReachDatabase& data
   std::vector<std::pair<double, Eigen::Vector3d>> poses;
   for (double wanted : tray_headings(where)) {
     for (int h = 0; h < static_cast<int>(grid.headings.size()); ++h) {
-      if (std::abs(wrap_angle(grid.headings[h] - wanted)) > 1e-9) continue;
+      if (std::abs(wrap_angle(grid.headings[h] - wanted)) >= kSameHeading) continue;
       for (int iy = 0; iy < grid.ny; ++iy) {
         for (int ix = 0; ix < grid.nx; ++ix) {
           const Eigen::Vector3d pose = grid.centre(h, ix, iy);

@@ -1,5 +1,6 @@
 #include "task/pick/pick_scene.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -9,6 +10,7 @@ namespace mmgrasp::detail {
 namespace {
 
 constexpr double kOpeningStep = 0.004;  // [m] between two checks of moving fingers
+constexpr double kJustTouching = 1e-6;  // [m] A part that slides along a wall without a gap is no pick.
 
 }  // namespace
 
@@ -47,6 +49,9 @@ CollisionChecker PickScene::holding(double opening, const Pose& T_hand_object) c
   const std::vector<std::string>& fingers = problem_.gripper.finger_links;
   world.attach(problem_.object, problem_.gripper.tool_link, T_hand_object,
                std::set<std::string>(fingers.begin(), fingers.end()));
+  Padding padding = world.padding();
+  padding.attached = std::max(padding.attached, kJustTouching);
+  world.set_padding(std::move(padding));
   return CollisionChecker(arm(opening), world);
 }
 

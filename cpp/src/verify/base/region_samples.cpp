@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "mmgrasp/core/parallel.hpp"
+#include "verify/base/grasp_search.hpp"
 #include "verify/context.hpp"
-#include "verify/grasp_search.hpp"
 
 namespace mmgrasp::verify::detail {
 namespace {
@@ -91,20 +91,21 @@ class RegionCheck {
     const RegionCells cells(plan_, region);
     const std::string where = "region of tray '" + region.tray + "'";
     const int count = context_.options.region_samples;
-    std::size_t good = 0, tried = 0;
+    std::vector<Eigen::Vector3d> poses;
     for (const Cell& cell : drawn(cells.inside, count, rng_)) {
-      if (context_.monitor.stopped()) return;
       const double x = rng_.uniform(0, 1), y = rng_.uniform(0, 1);
-      good += serves(cells.pose(cell, x, y), parts);
-      ++tried;
+      poses.push_back(cells.pose(cell, x, y));
     }
-    if (tried >= kFewest && static_cast<double>(good) < kLeastServing * static_cast<double>(tried)) {
+    const double needed = kLeastServing * static_cast<double>(poses.size());
+    const int from = serving(poses, parts, needed);
+    if (context_.monitor.stopped()) return;
+    if (poses.size() >= kFewest && from < needed) {
       faults_.push_back({"region-inflated", where,
-                         "only from " + std::to_string(good) + " of " + std::to_string(tried) +
+                         "only from " + std::to_string(from) + " of " + std::to_string(poses.size()) +
                              " base poses drawn in it all parts can be grasped"});
     }
     if (plan_.padded) return;
-    good = tried = 0;
+    std::size_t good = 0, tried = 0;
     for (const Cell& cell : drawn(cells.beside, count, rng_)) {
       if (context_.monitor.stopped()) return;
       good += whole_cell_serves(cells, cell, parts);
@@ -124,13 +125,14 @@ class RegionCheck {
     const double least = plan_.positioning_uncertainty;
     if (!(stop.radius > least + 1e-6)) return;
     const std::vector<int> parts = wanted_parts(plan_, stop.trays);
-    int good = 0;
     const int count = 2 * context_.options.region_samples;
-    for (int i = 0; i < count && !context_.monitor.stopped(); ++i) {
+    std::vector<Eigen::Vector3d> poses;
+    for (int i = 0; i < count; ++i) {
       const double radius = std::sqrt(rng_.uniform(least * least, stop.radius * stop.radius));
       const double angle = rng_.uniform(-M_PI, M_PI);
-      good += serves(stop.pose + radius * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0), parts);
+      poses.push_back(stop.pose + radius * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0));
     }
+    const int good = serving(poses, parts, kClaimed * count);
     if (good >= kClaimed * count || context_.monitor.stopped()) return;
     faults_.push_back({"stop-radius", "stop " + std::to_string(index),
                        "says that all parts can be grasped within " + text(stop.radius) + " m: between " + text(least) +
@@ -139,9 +141,21 @@ class RegionCheck {
   }
 
  private:
-  bool serves(const Eigen::Vector3d& pose, const std::vector<int>& parts) {
+  bool serves(const Eigen::Vector3d& pose, const std::vector<int>& parts, bool thoroughly = false) {
     Faults none;
-    return check_workspace(plan_, pose, 0, "", none) && search_.serves(pose, parts);
+    return check_workspace(plan_, pose, 0, "", none) && search_.serves(pose, parts, thoroughly);
+  }
+
+  /// How many of the poses serve, up to `needed`: as long as these are missing, a pose that seems lost is looked at
+  /// again with more tries, since a search by samples may miss a grasp that is there.
+  int serving(const std::vector<Eigen::Vector3d>& poses, const std::vector<int>& parts, double needed) {
+    std::vector<Eigen::Vector3d> lost;
+    for (const Eigen::Vector3d& pose : poses)
+      if (!context_.monitor.stopped() && !serves(pose, parts)) lost.push_back(pose);
+    int good = static_cast<int>(poses.size() - lost.size());
+    for (const Eigen::Vector3d& pose : lost)
+      if (good < needed && !context_.monitor.stopped()) good += serves(pose, parts, true);
+    return good;
   }
 
   /// At its corners and its middle, as planners look at a cell.

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "mmgrasp/core/pose.hpp"
-#include "verify/robot_model.hpp"
+#include "verify/robot/robot_model.hpp"
 
 namespace mmgrasp::verify::detail {
 

@@ -1,9 +1,9 @@
-#include "verify/kinematics.hpp"
+#include "verify/robot/kinematics.hpp"
 
 #include <algorithm>
 #include <kdl/tree.hpp>
 
-#include "verify/kdl_pose.hpp"
+#include "verify/robot/kdl_pose.hpp"
 
 namespace mmgrasp::verify::detail {
 namespace {

@@ -1,4 +1,4 @@
-#include "verify/tool_path.hpp"
+#include "verify/motion/tool_path.hpp"
 
 #include <algorithm>
 #include <cmath>

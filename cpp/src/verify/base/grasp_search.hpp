@@ -6,7 +6,7 @@
 
 #include "mmgrasp/core/random.hpp"
 #include "verify/context.hpp"
-#include "verify/ik.hpp"
+#include "verify/robot/ik.hpp"
 
 namespace mmgrasp::verify::detail {
 
@@ -33,12 +33,14 @@ class GraspSearch {
 
   /// Whether the part can be grasped from where the judge's base stands.
   bool find(int part);
+  /// As find(), with kSecondLook tries before the part counts as lost: for what a verdict hangs on.
+  bool find_thoroughly(int part);
   /// Moves the base there: whether the robot may stand there at home and grasp all these parts.
-  bool serves(const Eigen::Vector3d& base_pose, const std::vector<int>& parts);
+  bool serves(const Eigen::Vector3d& base_pose, const std::vector<int>& parts, bool thoroughly = false);
 
  private:
   bool try_hold(int part, Hold& hold);
-  bool search(int part);
+  bool search(int part, int tries);
   Eigen::VectorXd known_arm(int part);
   Eigen::VectorXd random_arm();
 

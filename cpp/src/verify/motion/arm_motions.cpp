@@ -5,11 +5,11 @@
 
 #include "mmgrasp/core/parallel.hpp"
 #include "verify/context.hpp"
-#include "verify/hand_check.hpp"
-#include "verify/hermite.hpp"
-#include "verify/motion_checks.hpp"
-#include "verify/motion_limits.hpp"
-#include "verify/tool_path.hpp"
+#include "verify/motion/hand_check.hpp"
+#include "verify/motion/hermite.hpp"
+#include "verify/motion/motion_checks.hpp"
+#include "verify/motion/motion_limits.hpp"
+#include "verify/motion/tool_path.hpp"
 
 namespace mmgrasp::verify::detail {
 namespace {

@@ -1,4 +1,4 @@
-#include "verify/urdf_document.hpp"
+#include "verify/robot/urdf_document.hpp"
 
 #include <console_bridge/console.h>
 #include <urdf_parser/urdf_parser.h>

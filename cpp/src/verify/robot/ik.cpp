@@ -1,4 +1,4 @@
-#include "verify/ik.hpp"
+#include "verify/robot/ik.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

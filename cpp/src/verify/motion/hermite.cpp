@@ -1,4 +1,4 @@
-#include "verify/hermite.hpp"
+#include "verify/motion/hermite.hpp"
 
 #include <algorithm>
 #include <cmath>

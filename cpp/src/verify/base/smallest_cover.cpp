@@ -1,4 +1,4 @@
-#include "verify/smallest_cover.hpp"
+#include "verify/base/smallest_cover.hpp"
 
 #include <CbcModel.hpp>
 #include <CoinPackedMatrix.hpp>

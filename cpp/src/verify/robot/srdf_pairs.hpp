@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "verify/robot_model.hpp"
+#include "verify/robot/robot_model.hpp"
 
 namespace mmgrasp::verify::detail {
 

@@ -100,8 +100,8 @@ class RouteCheck {
                              text(poses[i]) + " to " + text(poses[i + 1])});
       break;
     }
-    const bool told = leg < plan_.route_figures.size();
-    if (told && !figures_hold(plan_.route_figures[leg], poses, plan_.robot.base, plan_.robot.base_limits)) {
+    const bool stated = leg < plan_.route_figures.size();
+    if (stated && !figures_hold(plan_.route_figures[leg], poses, plan_.robot.base, plan_.robot.base_limits)) {
       faults_.push_back({"route-figures", name(leg),
                          "length or turning are not those of its poses, or the duration is below what the base needs"});
     }
@@ -126,8 +126,8 @@ class RouteCheck {
   void set_parts_on_leg(std::size_t leg) {
     for (std::size_t part = 0; part < plan_.parts.size(); ++part) {
       const int by = context_.picked_by[part];
-      const bool gone = by >= 0 && plan_.picks[by].stop < static_cast<int>(leg);
-      judge_.set_present(context_.body_of_part(static_cast<int>(part)), !gone);
+      const bool removed = by >= 0 && plan_.picks[by].stop < static_cast<int>(leg);
+      judge_.set_present(context_.body_of_part(static_cast<int>(part)), !removed);
     }
   }
 

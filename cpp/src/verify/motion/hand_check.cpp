@@ -1,4 +1,4 @@
-#include "verify/hand_check.hpp"
+#include "verify/motion/hand_check.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,9 +14,9 @@ constexpr double kGripShare = 0.25;  // or this share of it.
 bool HandCheck::collides(const Eigen::VectorXd& arm, double opening, const std::string& where) {
   const Touch touch = judge_.touch(arm, opening);
   if (!touch) return false;
-  const char* code = touch.kind == TouchKind::self   ? "self-collision"
-                     : touch.kind == TouchKind::held ? "held-collision"
-                                                     : "scene-collision";
+  const char* code = touch.kind == TouchKind::self       ? "self-collision"
+                     : touch.kind == TouchKind::attached ? "held-collision"
+                                                         : "scene-collision";
   faults_.push_back({code, where, "'" + touch.a + "' touches '" + touch.b + "'"});
   return true;
 }
@@ -39,7 +39,7 @@ void HandCheck::check_grip(const Eigen::VectorXd& arm, double width, const std::
   const double below = std::min(width, std::max(kGripPlay, kGripShare * width));
   int most = 0;
   for (int i = 0; i <= kSteps && most < 2; ++i) {
-    most = std::max(most, judge_.fingers_touching_held(arm, width - below * i / kSteps));
+    most = std::max(most, judge_.fingers_touching_attached(arm, width - below * i / kSteps));
   }
   if (most >= 2) return;
   faults_.push_back({"grasp-empty", where,

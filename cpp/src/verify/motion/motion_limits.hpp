@@ -3,7 +3,7 @@
 #include <string>
 
 #include "verify/context.hpp"
-#include "verify/kinematics.hpp"
+#include "verify/robot/kinematics.hpp"
 
 namespace mmgrasp::verify::detail {
 

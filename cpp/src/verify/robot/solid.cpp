@@ -1,4 +1,4 @@
-#include "verify/solid.hpp"
+#include "verify/robot/solid.hpp"
 
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/geometry/shape/box.h>

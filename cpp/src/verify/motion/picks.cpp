@@ -75,8 +75,8 @@ std::string Context::pick_name(std::size_t pick) const {
 
 void Context::set_parts_before(Judge& judge, std::size_t pick) const {
   for (std::size_t part = 0; part < plan.parts.size(); ++part) {
-    const bool gone = picked_by[part] >= 0 && static_cast<std::size_t>(picked_by[part]) < pick;
-    judge.set_present(body_of_part(static_cast<int>(part)), !gone);
+    const bool removed = picked_by[part] >= 0 && static_cast<std::size_t>(picked_by[part]) < pick;
+    judge.set_present(body_of_part(static_cast<int>(part)), !removed);
   }
 }
 

@@ -1,4 +1,4 @@
-#include "verify/mesh_file.hpp"
+#include "verify/robot/mesh_file.hpp"
 
 #include <assimp/config.h>
 #include <assimp/postprocess.h>

@@ -1,4 +1,4 @@
-#include "verify/floor.hpp"
+#include "verify/base/floor.hpp"
 
 #include <algorithm>
 #include <cmath>

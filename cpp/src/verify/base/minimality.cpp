@@ -3,10 +3,10 @@
 #include <cmath>
 #include <limits>
 
+#include "verify/base/floor.hpp"
+#include "verify/base/shared_discs.hpp"
+#include "verify/base/smallest_cover.hpp"
 #include "verify/context.hpp"
-#include "verify/floor.hpp"
-#include "verify/shared_discs.hpp"
-#include "verify/smallest_cover.hpp"
 
 namespace mmgrasp::verify::detail {
 namespace {

@@ -1,4 +1,4 @@
-#include "verify/robot_model.hpp"
+#include "verify/robot/robot_model.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,10 +7,10 @@
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
-#include "verify/kdl_pose.hpp"
-#include "verify/mesh_file.hpp"
-#include "verify/srdf_pairs.hpp"
-#include "verify/urdf_document.hpp"
+#include "verify/robot/kdl_pose.hpp"
+#include "verify/robot/mesh_file.hpp"
+#include "verify/robot/srdf_pairs.hpp"
+#include "verify/robot/urdf_document.hpp"
 
 namespace mmgrasp::verify::detail {
 namespace {

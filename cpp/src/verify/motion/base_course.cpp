@@ -1,4 +1,4 @@
-#include "verify/base_course.hpp"
+#include "verify/motion/base_course.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "verify/motion_limits.hpp"
+#include "verify/motion/motion_limits.hpp"
 
 namespace mmgrasp::verify::detail {
 namespace {

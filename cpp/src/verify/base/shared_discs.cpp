@@ -1,4 +1,4 @@
-#include "verify/shared_discs.hpp"
+#include "verify/base/shared_discs.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <iterator>
 #include <utility>
 
-#include "verify/region_bits.hpp"
+#include "verify/base/region_bits.hpp"
 
 // Lengths in here are in cells: cell (ix, iy) is the square [ix, ix + 1] x [iy, iy + 1].
 namespace mmgrasp::verify::detail {

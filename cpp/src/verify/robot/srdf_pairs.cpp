@@ -1,10 +1,10 @@
-#include "verify/srdf_pairs.hpp"
+#include "verify/robot/srdf_pairs.hpp"
 
 #include <tinyxml.h>
 
 #include <algorithm>
 
-#include "verify/urdf_document.hpp"
+#include "verify/robot/urdf_document.hpp"
 
 namespace mmgrasp::verify::detail {
 

@@ -5,8 +5,8 @@
 
 #include "mmgrasp/core/parallel.hpp"
 #include "mmgrasp/core/random.hpp"
+#include "verify/base/grasp_search.hpp"
 #include "verify/context.hpp"
-#include "verify/grasp_search.hpp"
 
 namespace mmgrasp::verify::detail {
 namespace {
@@ -57,7 +57,7 @@ ChunkResult run_chunk(const Context& context, const std::vector<Eigen::Vector3d>
       continue;
     }
     const auto failed =
-        std::find_if(order.begin(), order.end(), [&](std::size_t k) { return !search.find(wanted[k]); });
+        std::find_if(order.begin(), order.end(), [&](std::size_t k) { return !search.find_thoroughly(wanted[k]); });
     if (failed == order.end()) {
       ++result.good;
     } else {

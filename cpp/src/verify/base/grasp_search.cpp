@@ -1,4 +1,4 @@
-#include "verify/grasp_search.hpp"
+#include "verify/base/grasp_search.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,8 @@
 namespace mmgrasp::verify::detail {
 namespace {
 
-constexpr std::size_t kPool = 24;  // Configurations remembered for a part.
+constexpr std::size_t kPool = 24;    // Configurations remembered for a part.
+constexpr int kSecondLook = 15'000;  // IK solutions tried before a verdict against a plan.
 
 }  // namespace
 
@@ -50,13 +51,18 @@ bool GraspSearch::find(int part) {
     pool.push_front(std::move(hold));
     return true;
   }
-  return search(part);
+  return search(part, tries_);
 }
 
-bool GraspSearch::serves(const Eigen::Vector3d& base_pose, const std::vector<int>& parts) {
+bool GraspSearch::find_thoroughly(int part) {
+  return find(part) || search(part, kSecondLook);
+}
+
+bool GraspSearch::serves(const Eigen::Vector3d& base_pose, const std::vector<int>& parts, bool thoroughly) {
   judge_.set_base(base_pose);
-  return !judge_.touch(context_.plan.home, 0) &&
-         std::all_of(parts.begin(), parts.end(), [this](int part) { return find(part); });
+  return !judge_.touch(context_.plan.home, 0) && std::all_of(parts.begin(), parts.end(), [&](int part) {
+    return thoroughly ? find_thoroughly(part) : find(part);
+  });
 }
 
 /// Moves the hold's configuration onto its grasp from the present base pose, and checks it.
@@ -70,9 +76,9 @@ bool GraspSearch::try_hold(int part, Hold& hold) {
 }
 
 /// Other grasps from what the pools know, then from anywhere.
-bool GraspSearch::search(int part) {
+bool GraspSearch::search(int part, int tries) {
   const int grasps = static_cast<int>(context_.plan.parts[part].grasps.size());
-  for (int i = 0; grasps > 0 && i < std::max(tries_, 3 * grasps); ++i) {
+  for (int i = 0; grasps > 0 && i < std::max(tries, 3 * grasps); ++i) {
     Hold hold{i < grasps ? i : static_cast<int>(rng_.index(grasps)), i % 2 ? random_arm() : known_arm(part)};
     if (!try_hold(part, hold)) continue;
     pools_[part].push_front(std::move(hold));

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "mmgrasp/core/monitor.hpp"
-#include "verify/floor.hpp"
-#include "verify/smallest_cover.hpp"
+#include "verify/base/floor.hpp"
+#include "verify/base/smallest_cover.hpp"
 
 namespace mmgrasp::verify::detail {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "verify/kinematics.hpp"
+#include "verify/robot/kinematics.hpp"
 
 namespace mmgrasp::verify::detail {
 

@@ -1,9 +1,9 @@
-#include "verify/motion_limits.hpp"
+#include "verify/motion/motion_limits.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "verify/hermite.hpp"
+#include "verify/motion/hermite.hpp"
 
 namespace mmgrasp::verify::detail {
 namespace {

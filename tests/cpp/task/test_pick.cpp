@@ -13,6 +13,8 @@ const ReachDatabase& database() {
   return shared;
 }
 
+constexpr double kTableTop = 0.44;
+
 /// A pin on the table, in no tray, to be moved aside by 0.15 m; the robot stands in front of it.
 PickProblem pin_on_table() {
   const PartSupplyProblem room = test::small_storeroom();
@@ -66,6 +68,20 @@ TEST(Pick, WithoutAPlaceTheObjectStaysInTheHand) {
   EXPECT_TRUE(pick.motions.back().holding);
   EXPECT_EQ(pick.motions[2].kind, MotionKind::lift);
   EXPECT_LE(pick.grasp, whole.grasp);  // less is asked of a grasp
+}
+
+/// What rests on something may leave it; what touches a wall beside it would slide along the wall.
+TEST(Pick, WhatRestsMayLeaveButNotAlongAWall) {
+  PickProblem problem = pin_on_table();
+  problem.world.move("pin", test::at(0.88, -0.1, kTableTop + 0.03));
+  const Pick resting = plan_object_pick(problem, database());
+  EXPECT_EQ(resting.outcome, Outcome::solved) << resting.failed_at << ", " << resting.rejections.summary();
+  problem.world.add("slat", Box{{0.1, 0.03, 0.02}}, test::at(0.88 + 0.015 + 0.05, -0.1, kTableTop + 0.01));
+  const Pick beside = plan_object_pick(problem, database());
+  EXPECT_EQ(beside.outcome, Outcome::not_found);
+  EXPECT_EQ(beside.failed_at, "close");
+  problem.world.move("slat", test::at(0.88 + 0.015 + 0.05 + 1e-5, -0.1, kTableTop + 0.01));
+  EXPECT_EQ(plan_object_pick(problem, database()).outcome, Outcome::solved);
 }
 
 TEST(Pick, AnUnreachablePlaceIsNamed) {

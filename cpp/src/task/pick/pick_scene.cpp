@@ -55,6 +55,10 @@ CollisionChecker PickScene::holding(double opening, const Pose& T_hand_object) c
   return CollisionChecker(arm(opening), world);
 }
 
+CollisionChecker PickScene::lifting(double opening, const Pose& T_world_hand, const Pose& T_world_object) const {
+  return holding(opening, T_world_hand.inverse() * Eigen::Translation3d(0, 0, 2 * kJustTouching) * T_world_object);
+}
+
 bool PickScene::fingers_free(const CollisionChecker& checker, const Eigen::VectorXd& q, double from, double to) const {
   const int steps = std::max(1, static_cast<int>(std::ceil(std::abs(to - from) / kOpeningStep)));
   for (int i = 0; i <= steps; ++i) {

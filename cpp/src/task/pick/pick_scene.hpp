@@ -20,6 +20,8 @@ class PickScene {
   CollisionChecker& after(double opening);
   /// Object held; `T_hand_object` changes from grasp to grasp, so this one is not kept.
   CollisionChecker holding(double opening, const Pose& T_hand_object) const;
+  /// The same for the way up from where the object stands: raised by a hair, so that it may leave what it rests on.
+  CollisionChecker lifting(double opening, const Pose& T_world_hand, const Pose& T_world_object) const;
 
   /// The fingers can take every opening between two with the arm at q, among what the checker knows.
   bool fingers_free(const CollisionChecker& checker, const Eigen::VectorXd& q, double from, double to) const;

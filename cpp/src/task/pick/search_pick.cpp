@@ -137,15 +137,16 @@ class PickPlanner {
     paths.approach = reversed(*back.path);
 
     const Pose T_grasp = before.group().fk(q);
-    const Pose T_hand_object = T_grasp.inverse() * T_world_object_;
-    CollisionChecker holding = scene_.holding(width, T_hand_object);
-    if (!scene_.fingers_free(holding, q, opening, width)) return fell(kClose);
+    CollisionChecker lifting = scene_.lifting(width, T_grasp, T_world_object_);
+    if (!scene_.fingers_free(lifting, q, opening, width)) return fell(kClose);
     Pose T_lifted = T_grasp;
     T_lifted.translation().z() += problem_.options.lift_height;
-    const StraightLineResult lift = plan_straight_line(holding, q, T_lifted, line_options());
+    const StraightLineResult lift = plan_straight_line(lifting, q, T_lifted, line_options());
     if (lift.outcome != Outcome::solved) return fell(kLift);
     paths.lift = *lift.path;
 
+    const Pose T_hand_object = T_grasp.inverse() * T_world_object_;
+    CollisionChecker holding = scene_.holding(width, T_hand_object);
     CollisionChecker& after = scene_.after(opening);
     std::vector<Eigen::VectorXd> releases;
     if (!problem_.places.empty()) {
@@ -159,7 +160,7 @@ class PickPlanner {
     if (!scene_.fingers_free(before, problem_.home, 0, opening)) return fell(kTransit);
     ++motion_tries_;
     if (!plan_motions(before, holding, after, releases, paths)) return false;
-    return finish(grasp, width, opening, before, holding, after, paths);
+    return finish(grasp, width, opening, {&before, &before, &lifting, &holding, &after}, paths);
   }
 
   StraightLineOptions line_options() const {
@@ -190,22 +191,25 @@ class PickPlanner {
            motion(after, paths.transfer.waypoints.back(), {problem_.home}, kRetreat, paths.retreat);
   }
 
-  bool finish(int grasp, double width, double opening, CollisionChecker& before, CollisionChecker& holding,
-              CollisionChecker& after, const Paths& paths) {
+  /// Checkers of transit, approach, lift, transfer, retreat.
+  using MotionCheckers = std::array<CollisionChecker*, 5>;
+
+  bool finish(int grasp, double width, double opening, const MotionCheckers& checkers, const Paths& paths) {
     TimingOptions line;
     line.max_deviation = kLineDeviation;
-    const auto timed = [](CollisionChecker& checker, const JointPath& path, const TimingOptions& options) {
-      return time_parameterize_free(checker, path, options, kTimedStep);
+    const auto add = [&](MotionKind kind, bool holds, const JointPath& path, const TimingOptions& options) {
+      CollisionChecker& checker = *checkers[pick_.motions.size()];
+      pick_.motions.push_back(
+          {kind, holds ? width : opening, holds, time_parameterize_free(checker, path, options, kTimedStep)});
     };
-    pick_.motions = {{MotionKind::transit, opening, false, timed(before, paths.transit, {})},
-                     {MotionKind::approach, opening, false, timed(before, paths.approach, line)},
-                     {MotionKind::lift, width, true, timed(holding, paths.lift, line)}};
+    add(MotionKind::transit, false, paths.transit, {});
+    add(MotionKind::approach, false, paths.approach, line);
+    add(MotionKind::lift, true, paths.lift, line);
     if (!problem_.places.empty()) {
-      pick_.motions.push_back({MotionKind::transfer, width, true, timed(holding, paths.transfer, {})});
-      pick_.motions.push_back({MotionKind::retreat, opening, false, timed(after, paths.retreat, {})});
+      add(MotionKind::transfer, true, paths.transfer, {});
+      add(MotionKind::retreat, false, paths.retreat, {});
     }
     join_motions(problem_.arm.wraps(), problem_.home, pick_.motions);
-    const std::array<CollisionChecker*, 5> checkers = {&before, &before, &holding, &holding, &after};
     const std::array<Stage, 5> stages = {kTransit, kApproach, kLift, kTransfer, kRetreat};
     for (std::size_t i = 0; i < pick_.motions.size(); ++i) {
       if (trajectory_free(*checkers[i], pick_.motions[i].trajectory)) continue;

@@ -25,7 +25,7 @@ PyObject* new_object(PyTypeObject* type, PyObject* args, PyObject* kwargs) {
 
 void guard_classes(const py::handle& scope) {
   for (const auto& item : py::dict(scope.attr("__dict__"))) {
-    if (!PyType_Check(item.second.ptr()) || py::hasattr(item.second, "__setstate__")) continue;
+    if (!PyType_Check(item.second.ptr())) continue;
     auto* type = reinterpret_cast<PyTypeObject*>(item.second.ptr());
     if (type->tp_new == g_new) {
       type->tp_new = &new_object;

@@ -73,23 +73,34 @@ BaseRegion region_of(const py::tuple& s) {
   return r;
 }
 
+/// No __setstate__: it would need an object that nothing has made yet.
+template <class Class, class State, class Made>
+void pickles(py::class_<Class>& declared_class, State state, Made made) {
+  declared_class.def_static("_from_state", made, py::arg("state"));
+  declared_class.def("__reduce__", [state](const py::object& self) {
+    const py::object restored = py::module_::import("mmgrasp._pickling").attr("restored");
+    return py::make_tuple(restored, py::make_tuple(py::type::of(self), state(py::cast<const Class&>(self))));
+  });
+}
+
 }  // namespace
 
 void bind_pickle(py::module_& m) {
-  declared<BaseGrid>(m, "BaseGrid").def(py::pickle(&grid_state, &grid_of));
-  declared<PartExplanation>(m, "PartExplanation").def(py::pickle(&explanation_state, &explanation_of));
-  declared<BaseRegion>(m, "BaseRegion")
-      .def(py::init([](std::string tray, const ArrayLike& cells, const BaseGrid& grid) {
-             BaseRegion region;
-             region.tray = std::move(tray);
-             region.cells = flags_argument(
-                 cells, "cells",
-                 {static_cast<py::ssize_t>(grid.headings.size()), py::ssize_t{grid.ny}, py::ssize_t{grid.nx}});
-             return region;
-           }),
-           py::arg("tray"), py::arg("cells"), py::arg("grid"),
-           "A region known from elsewhere: (headings, ny, nx) zeros and ones, to be intersected with others.")
-      .def(py::pickle(&region_state, &region_of));
+  auto grid = declared<BaseGrid>(m, "BaseGrid");
+  pickles(grid, &grid_state, &grid_of);
+  auto explanation = declared<PartExplanation>(m, "PartExplanation");
+  pickles(explanation, &explanation_state, &explanation_of);
+  auto region = declared<BaseRegion>(m, "BaseRegion");
+  pickles(region, &region_state, &region_of);
+  region.def(py::init([](std::string tray, const ArrayLike& cells, const BaseGrid& g) {
+               BaseRegion known;
+               known.tray = std::move(tray);
+               known.cells = flags_argument(
+                   cells, "cells", {static_cast<py::ssize_t>(g.headings.size()), py::ssize_t{g.ny}, py::ssize_t{g.nx}});
+               return known;
+             }),
+             py::arg("tray"), py::arg("cells"), py::arg("grid"),
+             "A region known from elsewhere: (headings, ny, nx) zeros and ones, to be intersected with others.");
 }
 
 }  // namespace mmgrasp::python

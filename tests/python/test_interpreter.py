@@ -1,7 +1,9 @@
-"""Objects without their constructors, threads when the interpreter ends, several solvers at once."""
+"""Objects without their constructors, Ctrl-C while the package loads, threads when the interpreter ends, several solvers at once."""
 
 from __future__ import annotations
 
+import pickle
+import signal
 import subprocess
 import sys
 import threading
@@ -17,7 +19,7 @@ from mmgrasp import _core
 
 def classes(module: ModuleType) -> list[type]:
     made = [c for c in vars(module).values() if isinstance(c, type) and not issubclass(c, Exception)]
-    return [c for c in made if type(c).__name__ == "pybind11_type" and not hasattr(c, "__setstate__")]
+    return [c for c in made if type(c).__name__ == "pybind11_type"]
 
 
 @pytest.mark.parametrize("kind", [*classes(_core), *classes(_core.verify)], ids=lambda c: c.__name__)
@@ -36,6 +38,33 @@ def test_subclasses_and_copies_still_work() -> None:
     world.add_box("table", (1, 1, 1))
     assert world.copy().objects == ["table"]
     assert repr(mg.Box([1, 2, 3]))
+
+
+WHILE_LOADING = """
+import os, signal, sys
+class Interrupting:
+    def find_spec(name, path, target=None):
+        if name == "mmgrasp":
+            os.kill(os.getpid(), signal.SIGINT)
+sys.meta_path.insert(0, Interrupting)
+import mmgrasp_command
+mmgrasp_command.main()
+"""
+
+
+@pytest.mark.skipif(signal.getsignal(signal.SIGINT) != signal.default_int_handler, reason="SIGINT is ignored here")
+def test_ctrl_c_while_the_package_loads_ends_the_command_without_a_word() -> None:
+    done = subprocess.run([sys.executable, "-c", WHILE_LOADING], capture_output=True, text=True, timeout=60)
+    assert (done.returncode, done.stdout, done.stderr) == (-signal.SIGINT, "", "")
+
+
+def test_pickles_come_back_to_the_last_bit() -> None:
+    grid = pickle.loads(pickle.dumps(mg.base.BaseGrid([0.1, -2], 0.05, 3, 2, [0.0, 0.3])))
+    assert (grid.origin.tolist(), grid.resolution, grid.nx, grid.ny, grid.headings) == ([0.1, -2], 0.05, 3, 2, [0, 0.3])
+    cells = np.arange(12).reshape(2, 2, 3) % 2
+    region = pickle.loads(pickle.dumps(mg.base.BaseRegion("A", cells, grid)))
+    assert region.tray == "A"
+    np.testing.assert_array_equal(region.cells(grid), cells)
 
 
 AT_EXIT = """

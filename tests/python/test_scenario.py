@@ -141,6 +141,7 @@ BAD = [
         ["gripper.finger_links[1]", "no part of the hand"],
     ),
     ("gripper.closing_speed", 0, ["gripper.closing_speed", "> 0"]),
+    ("gripper.closing_speed", 11, ["gripper.closing_speed", "10"]),
     ("place_region.size", [0.3, 1e-300, 0.1], ["place_region.size[1]", "at least 1e-06"]),
     ("name", "\x1b[31mred", ["name", "control characters"]),
     ("trays.0.name", "x" * 5000, ["trays[0].name", "at most 200 characters"]),

@@ -12,6 +12,7 @@ namespace {
 
 // Lengths and angles beyond this are no part of a room; they would only break the arithmetic.
 constexpr double kLargest = 1e6;
+constexpr double kMostClosingSpeed = 10;  // [m/s]: no hand's opening shrinks faster.
 
 bool finite(double value) {
   return std::abs(value) <= kLargest;
@@ -146,7 +147,8 @@ void Structure::scalars() {
   need(finite(Eigen::VectorXd(plan.bin_size)) && plan.bin_size.minCoeff() > 0, "place_region",
        "the bin's size must be positive");
   need(finite(plan.drop_height) && plan.drop_height >= 0, "place_region", "drop_height must not be negative");
-  need(finite(plan.closing_speed) && plan.closing_speed > 0, "closing_speed", "must be positive");
+  need(plan.closing_speed > 0 && plan.closing_speed <= kMostClosingSpeed, "closing_speed",
+       text(plan.closing_speed) + ": must be positive and at most " + text(kMostClosingSpeed) + " m/s");
   for (std::size_t i = 0; i < plan.stops.size(); ++i) {
     need(finite(Eigen::VectorXd(plan.stops[i].pose)) && finite(plan.stops[i].radius), "stop " + std::to_string(i),
          "must be finite");

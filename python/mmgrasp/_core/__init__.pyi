@@ -2921,16 +2921,17 @@ class BaseGrid:
     """
     Square cells over the floor, one layer for each heading.
     """
-    def __getstate__(self) -> tuple[typing.Any, ...]:
+    @staticmethod
+    def _from_state(state: tuple[typing.Any, ...]) -> BaseGrid:
         ...
     def __init__(self, origin: numpy.typing.ArrayLike, resolution: float, nx: int, ny: int, headings: collections.abc.Sequence[float] = [0.0]) -> None:
         """
         `origin` (2,) is the lower corner of cell (0, 0) [m], `resolution` the edge of a cell [m], nx and ny the
         cells along x and y, `headings` one layer each [rad], distinct.
         """
-    def __repr__(self) -> str:
+    def __reduce__(self) -> tuple[typing.Any, tuple[type, tuple]]:
         ...
-    def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
+    def __repr__(self) -> str:
         ...
     def centre(self, heading: int, ix: int, iy: int) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -2965,11 +2966,12 @@ class PartExplanation:
     """
     What became of the candidates for one part over all base poses tried.
     """
-    def __getstate__(self) -> tuple[typing.Any, ...]:
+    @staticmethod
+    def _from_state(state: tuple[typing.Any, ...]) -> PartExplanation:
+        ...
+    def __reduce__(self) -> tuple[typing.Any, tuple[type, tuple]]:
         ...
     def __repr__(self) -> str:
-        ...
-    def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
         ...
     def to_dict(self) -> dict[str, typing.Any]:
         """
@@ -3004,15 +3006,16 @@ class BaseRegion:
     """
     Base poses from which every target part of a tray can be grasped.
     """
-    def __getstate__(self) -> tuple[typing.Any, ...]:
+    @staticmethod
+    def _from_state(state: tuple[typing.Any, ...]) -> BaseRegion:
         ...
     def __init__(self, tray: str, cells: numpy.typing.ArrayLike, grid: BaseGrid) -> None:
         """
         A region known from elsewhere: (headings, ny, nx) zeros and ones, to be intersected with others.
         """
-    def __repr__(self) -> str:
+    def __reduce__(self) -> tuple[typing.Any, tuple[type, tuple]]:
         ...
-    def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
+    def __repr__(self) -> str:
         ...
     def cells(self, grid: BaseGrid) -> numpy.typing.NDArray[numpy.uint8]:
         """

@@ -145,7 +145,7 @@ def read_setup(sections: RobotSections, progress: Progress = None) -> RobotSetup
     _fixed_to_root(arm, sections.place_region["parent"], home)
     if "finger_links" in sections.gripper:
         _check_finger_links(sections.gripper["finger_links"], arm, tool_link, home)
-    speed = sections.gripper["closing_speed"].number(above=0) if "closing_speed" in sections.gripper else 0.1
+    speed = sections.gripper["closing_speed"].number(above=0, most=10) if "closing_speed" in sections.gripper else 0.1
     place_region = _read_place_region(sections.place_region, bin_pose)
     return RobotSetup(robot, arm, gripper, place_region, home, other, speed)
 

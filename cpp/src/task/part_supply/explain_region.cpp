@@ -210,7 +210,9 @@ Obstruction explain_region(const PartSupplyProblem& problem, const ReachDatabase
   add_advised_move(obstruction, problem, database, grid, tray, earlier);
   const std::string fix =
       advice(explanation, obstruction, region.base_poses_in_collision, problem, part.grasps_too_wide);
-  if (explanation.base_poses_feasible > 0) {
+  if (explanation.base_poses_tried == 0) {
+    obstruction.message = "part '" + part.name + "': no base pose could be tried: " + fix;
+  } else if (explanation.base_poses_feasible > 0) {
     obstruction.message = "tray '" + region.tray + "': no cell of base poses serves all its parts; part '" + part.name +
                           "' can be grasped from the fewest: " + fix;
   } else {

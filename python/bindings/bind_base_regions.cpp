@@ -113,6 +113,18 @@ void bind_region_classes(py::module_& m) {
       py::arg("problem"), py::arg("database"), py::arg("grid"), py::kw_only(), py::arg("progress") = py::none(),
       "P1 Algorithm 2 with exact inverse kinematics: one region for each tray with target parts.");
   m.def(
+      "share_headings",
+      [](const PartSupplyProblem& problem, const ReachDatabase& database, const BaseGrid& grid,
+         const std::vector<BaseRegion>& regions, const Progress& progress) {
+        return LongCall(progress).run(
+            [&](const Monitor& monitor) { return share_headings(problem, database, grid, regions, monitor); });
+      },
+      py::arg("problem"), py::arg("database"), py::arg("grid"), py::arg("regions"), py::kw_only(),
+      py::arg("progress") = py::none(),
+      "The regions of compute_base_regions, and besides where trays that list no headings can be served at another "
+      "tray's\n"
+      "heading, in the cells where that one is served: trays that face each other get stops in common.");
+  m.def(
       "inscribed_circle",
       [](const BaseGrid& grid, const ArrayLike& cells, int heading) {
         if (heading < 0 || heading >= static_cast<int>(grid.headings.size())) {

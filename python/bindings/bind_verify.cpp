@@ -117,12 +117,13 @@ void bind_checked_parts(py::module_& m) {
 
 void bind_checked_tray(py::module_& m) {
   py::class_<CheckedTray>(m, "CheckedTray", "How base poses for a tray were searched.")
-      .def(py::init([](std::vector<double> headings, const ArrayLike& middle, double max_distance) {
-             return CheckedTray{std::move(headings), vector2_argument(middle, "middle"), max_distance};
+      .def(py::init([](std::vector<double> headings, const ArrayLike& middle, double max_distance,
+                       bool shares_headings) {
+             return CheckedTray{std::move(headings), vector2_argument(middle, "middle"), max_distance, shares_headings};
            }),
-           py::arg("headings"), py::arg("middle"), py::arg("max_distance"),
-           "Base headings tried [rad], the tray's middle (2,) and the distance from it beyond which none were tried "
-           "[m].");
+           py::arg("headings"), py::arg("middle"), py::arg("max_distance"), py::arg("shares_headings") = false,
+           "Base headings tried [rad], the tray's middle (2,), the distance from it beyond which none were tried [m], "
+           "and whether other trays' headings were tried where one of these can be served.");
 }
 
 void bind_plan_to_check(py::module_& m) {

@@ -24,6 +24,7 @@ from ._core import (
     make_base_grid as make_base_grid,
     BaseGrid as BaseGrid,
     compute_base_regions as compute_base_regions,
+    share_headings as share_headings,
     BaseRegion as BaseRegion,
     PartExplanation as PartExplanation,
     ObjectRegions as ObjectRegions,

@@ -111,9 +111,9 @@ class CheckedTray:
     """
     How base poses for a tray were searched.
     """
-    def __init__(self, headings: collections.abc.Sequence[float], middle: numpy.typing.ArrayLike, max_distance: float) -> None:
+    def __init__(self, headings: collections.abc.Sequence[float], middle: numpy.typing.ArrayLike, max_distance: float, shares_headings: bool = False) -> None:
         """
-        Base headings tried [rad], the tray's middle (2,) and the distance from it beyond which none were tried [m].
+        Base headings tried [rad], the tray's middle (2,), the distance from it beyond which none were tried [m], and whether other trays' headings were tried where one of these can be served.
         """
 class PlanToCheck:
     """

@@ -100,7 +100,9 @@ def _read_scene(plan: checks.PlanToCheck, scenario: Node) -> None:
     plan.trays = [tray["name"].string() for tray in scenario["trays"].elements()]
     farthest = scenario["options"]["grid_max_distance"].number(least=0) or math.inf
     plan.searched = {
-        tray["name"].raw: checks.CheckedTray(tray["headings"].numbers(), tray["pose"].pose()[:2, 3], farthest)
+        tray["name"].raw: checks.CheckedTray(
+            tray["headings"].numbers(), tray["pose"].pose()[:2, 3], farthest, tray["shares_headings"].boolean()
+        )
         for tray in scenario["trays"].elements()
     }
     parts = []

@@ -113,6 +113,7 @@ def scenario_to_dict(scenario: Scenario) -> dict[str, Any]:
                 "pose": pose_to_dict(t.tray.T_world_tray),
                 "size": t.tray.size.tolist(),
                 "headings": _headings(t.tray),
+                "shares_headings": not t.tray.headings,
             }
             for t in scenario.trays
         ],
@@ -147,7 +148,7 @@ def _reach_options() -> dict[str, tuple[Any, str]]:
 
 
 def _headings(tray: _core.Tray) -> list[float]:
-    """The base headings tried at a tray: those it lists, or the one that faces it."""
+    """The base headings of a tray: those it lists, or the one that faces it."""
     front = tray.T_world_tray[:3, 0]
     return [float(h) for h in tray.headings] or [math.atan2(front[1], front[0])]
 

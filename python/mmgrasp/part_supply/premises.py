@@ -10,6 +10,7 @@ class Premises(TypedDict):
     """What a proven least number of stops holds for: the section `premises` of plan.json (docs/plan_format.md)."""
 
     headings: dict[str, list[float]]  # of the base, by tray [rad]
+    shared_headings: bool  # trays that list none were also tried at other trays', where one of these can be served
     positioning_uncertainty: float  # radius of the discs [m]
     cell: float  # edge of the base grid's cells [m]
     max_distance: float  # of cells from the tray's middle [m]; 0: as far as the arm reaches
@@ -25,6 +26,7 @@ def premises(plan: dict[str, Any]) -> Premises:
     options, reach = scenario["options"], scenario["reach"]
     return {
         "headings": {tray["name"]: tray["headings"] for tray in scenario["trays"]},
+        "shared_headings": any(tray["shares_headings"] for tray in scenario["trays"]),
         "positioning_uncertainty": scenario["positioning_uncertainty"],
         "cell": plan["grid"]["resolution"],
         "max_distance": options.get("grid_max_distance", 0.0),
@@ -36,10 +38,11 @@ def premises(plan: dict[str, Any]) -> Premises:
 
 
 def premises_text(said: Premises) -> str:
-    """The premises as the end of a sentence, e.g. "for base headings of 0°, 90° (each tray at its own), ..."."""
+    """The premises as the end of a sentence, e.g. "for base headings of 0°, 90° (each tray at its own, and at another's where that one is served, too), ..."."""
     by_tray = [sorted({round(math.degrees(h)) % 360 for h in headings}) for headings in said["headings"].values()]
     angles = sorted({angle for headings in by_tray for angle in headings})
-    own = " (each tray at its own)" if any(headings != angles for headings in by_tray) else ""
+    elsewhere = ", and at another's where that one is served, too" if said["shared_headings"] else ""
+    own = f" (each tray at its own{elsewhere})" if any(headings != angles for headings in by_tray) else ""
     known = [
         f"base headings of {', '.join(f'{angle}°' for angle in angles)}{own}",
         f"base cells of {100 * said['cell']:g} cm",

@@ -59,4 +59,13 @@ MMGRASP_EXPORT std::vector<BaseRegion> compute_base_regions(const PartSupplyProb
                                                             const ReachDatabase& database, const BaseGrid& grid,
                                                             const Monitor& monitor = {});
 
+/// Adds to the regions what neighbours share: a tray that lists no headings (Tray::headings) is also tried at those of
+/// the other trays, in the cells where one of these can be served at its own heading. So trays that face each other get
+/// stops in common. Cells that no tray's own heading serves are not tried. `regions`: of compute_base_regions() for the
+/// same problem and grid. Same answer at any thread count; empty when the monitor ended it; InvalidInput for regions of
+/// another problem or grid. P1 3.3 has one heading for each tray.
+MMGRASP_EXPORT std::vector<BaseRegion> share_headings(const PartSupplyProblem& problem, const ReachDatabase& database,
+                                                      const BaseGrid& grid, std::vector<BaseRegion> regions,
+                                                      const Monitor& monitor = {});
+
 }  // namespace mmgrasp

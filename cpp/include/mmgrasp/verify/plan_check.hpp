@@ -87,6 +87,7 @@ struct MMGRASP_EXPORT CheckedTray {
   std::vector<double> headings;                                   ///< Base headings tried [rad].
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();               ///< Of the tray, in the world [m].
   double max_distance = std::numeric_limits<double>::infinity();  ///< Base poses farther from it were left out [m].
+  bool shares_headings = false;  ///< Tried at other trays' headings, too, where one of these trays can be served.
 };
 
 /// What a plan says about a leg of its route.

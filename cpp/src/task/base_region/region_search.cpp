@@ -14,8 +14,8 @@ constexpr std::size_t kHomeBlock = 128;  // Base poses that one item of the loop
 
 }  // namespace
 
-RegionSearch::RegionSearch(const PartSupplyProblem& problem, const ReachDatabase& database, const BaseGrid& grid,
-                           const BasePoseEvaluator& evaluator, bool resumable)
+RegionSearch::RegionSearch(const PartSupplyProblem& problem, const BaseGrid& grid, const BasePoseEvaluator& evaluator,
+                           bool resumable)
     : problem_(&problem),
       grid_(grid),
       resumable_(resumable),
@@ -23,7 +23,20 @@ RegionSearch::RegionSearch(const PartSupplyProblem& problem, const ReachDatabase
       home_(grid) {
   clone_evaluators(evaluator);
   for (const Tray& tray : problem.trays) removed_.emplace_back(tray.parts.size(), 0);
-  for (TrayId tray : all_trays(problem)) add_windows(tray, database);
+}
+
+RegionSearch::RegionSearch(const PartSupplyProblem& problem, const ReachDatabase& database, const BaseGrid& grid,
+                           const BasePoseEvaluator& evaluator, bool resumable)
+    : RegionSearch(problem, grid, evaluator, resumable) {
+  for (TrayId tray : all_trays(problem)) add_windows(tray, database, nullptr);
+}
+
+RegionSearch::RegionSearch(const PartSupplyProblem& problem, const ReachDatabase& database, const BaseGrid& grid,
+                           const BasePoseEvaluator& evaluator, const CellMask& served)
+    : RegionSearch(problem, grid, evaluator, false) {
+  for (TrayId tray : all_trays(problem)) {
+    if (tray_of(problem, tray).headings.empty()) add_windows(tray, database, &served);
+  }
 }
 
 RegionSearch::RegionSearch(const RegionSearch& other)
@@ -42,18 +55,19 @@ void RegionSearch::clone_evaluators(const BasePoseEvaluator& evaluator) {
   for (int i = 0; i < threads_; ++i) evaluators_.push_back(evaluator.clone());
 }
 
-void RegionSearch::add_windows(TrayId id, const ReachDatabase& database) {
+/// At the tray's own headings; with `served` at all others.
+void RegionSearch::add_windows(TrayId id, const ReachDatabase& database, const CellMask* served) {
   const Tray& tray = tray_of(*problem_, id);
   const std::vector<int> targets = parts(id);
   if (targets.empty()) return;
   const double radius = base_search_radius(*problem_, tray, database);
   const Eigen::Vector2d middle = tray.T_world_tray.translation().head<2>();
-  for (double wanted : tray_headings(tray)) {
-    const auto heading = std::find_if(grid_.headings.begin(), grid_.headings.end(), [&](double known) {
-      return std::abs(wrap_angle(known - wanted)) < kSameHeading;
-    });
-    if (heading == grid_.headings.end()) continue;  // a grid made by hand may leave it out
-    windows_.emplace_back(id, static_cast<int>(heading - grid_.headings.begin()), targets, grid_, middle, radius);
+  const std::vector<int> own = tray_layers(grid_, tray);
+  for (int layer = 0; layer < static_cast<int>(grid_.headings.size()); ++layer) {
+    const bool is_own = std::find(own.begin(), own.end(), layer) != own.end();
+    if (is_own == (served != nullptr)) continue;
+    TrayWindow window(id, layer, targets, grid_, middle, radius);
+    if (!served || window.keep_only(grid_, *served)) windows_.push_back(std::move(window));
   }
 }
 

@@ -18,6 +18,9 @@ class RegionSearch {
   /// needs. The problem must outlive the search.
   RegionSearch(const PartSupplyProblem& problem, const ReachDatabase& database, const BaseGrid& grid,
                const BasePoseEvaluator& evaluator, bool resumable);
+  /// Trays that list no headings, at those that are not theirs, in the cells flagged in `served` alone.
+  RegionSearch(const PartSupplyProblem& problem, const ReachDatabase& database, const BaseGrid& grid,
+               const BasePoseEvaluator& evaluator, const CellMask& served);
   RegionSearch(const RegionSearch& other);
   RegionSearch& operator=(const RegionSearch&) = delete;
 
@@ -47,7 +50,9 @@ class RegionSearch {
     std::vector<BlockedPose> blocked;
   };
 
-  void add_windows(TrayId tray, const ReachDatabase& database);
+  RegionSearch(const PartSupplyProblem& problem, const BaseGrid& grid, const BasePoseEvaluator& evaluator,
+               bool resumable);
+  void add_windows(TrayId tray, const ReachDatabase& database, const CellMask* served);
   void clone_evaluators(const BasePoseEvaluator& evaluator);
   std::uint8_t& home(const TrayWindow& window, bool corner, int ix, int iy);
   bool check_home(const std::vector<TrayWindow*>& windows, bool corner, const Monitor& monitor);
@@ -69,5 +74,10 @@ class RegionSearch {
 std::vector<BaseRegion> compute_base_regions(const PartSupplyProblem& problem, const ReachDatabase& database,
                                              const BaseGrid& grid, const BasePoseEvaluator& evaluator,
                                              const Monitor& monitor);
+
+/// share_headings() with an evaluator that exists already.
+std::vector<BaseRegion> share_headings(const PartSupplyProblem& problem, const ReachDatabase& database,
+                                       const BaseGrid& grid, std::vector<BaseRegion> regions,
+                                       const BasePoseEvaluator& evaluator, const Monitor& monitor);
 
 }  // namespace mmgrasp::detail

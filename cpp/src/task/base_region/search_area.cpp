@@ -21,6 +21,18 @@ std::vector<double> tray_headings(const Tray& tray) {
   return headings;
 }
 
+std::vector<int> tray_layers(const BaseGrid& grid, const Tray& tray) {
+  std::vector<int> layers;
+  for (double wanted : tray_headings(tray)) {
+    for (int layer = 0; layer < static_cast<int>(grid.headings.size()); ++layer) {
+      if (std::abs(wrap_angle(grid.headings[layer] - wanted)) >= kSameHeading) continue;
+      layers.push_back(layer);
+      break;
+    }
+  }
+  return layers;
+}
+
 double base_search_radius(const PartSupplyProblem& problem, const Tray& tray, const ReachDatabase& database) {
   if (problem.options.grid.max_distance > 0) return problem.options.grid.max_distance;
   // Half the tray's diagonal, so that a part in its far corner still counts.

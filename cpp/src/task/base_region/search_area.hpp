@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "mmgrasp/task/base_grid.hpp"
 #include "mmgrasp/task/problem.hpp"
 
 namespace mmgrasp::detail {
@@ -14,6 +15,9 @@ constexpr double kSameHeading = 1e-6;
 
 /// Adds a heading unless the list has it, up to full turns and kSameHeading.
 void add_heading(std::vector<double>& headings, double heading);
+
+/// Indices of the tray's headings in the grid's; a grid made by hand may leave some out.
+std::vector<int> tray_layers(const BaseGrid& grid, const Tray& tray);
 
 /// Base poses farther than this from the tray's middle are not tried [m].
 double base_search_radius(const PartSupplyProblem& problem, const Tray& tray, const ReachDatabase& database);

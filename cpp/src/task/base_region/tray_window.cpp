@@ -32,6 +32,18 @@ TrayWindow::TrayWindow(TrayId tray, int heading, std::vector<int> parts, const B
   totals_.resize(parts_.size());
 }
 
+bool TrayWindow::keep_only(const BaseGrid& grid, const CellMask& cells) {
+  bool any = false;
+  for (int iy = 0; iy < ny_; ++iy) {
+    for (int ix = 0; ix < nx_; ++ix) {
+      std::uint8_t& flag = in_range_[cell(ix, iy)];
+      flag &= cells[grid.index(heading_, grid_x(ix), grid_y(iy))];
+      any = any || flag;
+    }
+  }
+  return any;
+}
+
 Eigen::Vector3d TrayWindow::pose(const BaseGrid& grid, bool corner, int ix, int iy) const {
   Eigen::Vector3d p = grid.centre(heading_, x0_ + ix, y0_ + iy);
   if (corner) p.head<2>().array() -= 0.5 * grid.resolution;

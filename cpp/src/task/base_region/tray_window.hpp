@@ -27,6 +27,9 @@ class TrayWindow {
   TrayWindow(TrayId tray, int heading, std::vector<int> parts, const BaseGrid& grid, const Eigen::Vector2d& middle,
              double radius);
 
+  /// Takes cells out of range that are not flagged in the grid's `cells`. False when none is left.
+  bool keep_only(const BaseGrid& grid, const CellMask& cells);
+
   TrayId tray() const { return tray_; }
   int heading() const { return heading_; }
   int nx() const { return nx_; }

@@ -97,6 +97,9 @@ class PartSupply {
     plan_.grid = make_base_grid(problem_, database_);
     evaluator_.emplace(problem_, database_);
     plan_.regions = compute_base_regions(problem_, database_, plan_.grid, *evaluator_, monitor_);
+    if (monitor_.stopped()) return false;
+    plan_.regions =
+        share_headings(problem_, database_, plan_.grid, std::move(plan_.regions), *evaluator_, monitor_);
     return !monitor_.stopped();
   }
 

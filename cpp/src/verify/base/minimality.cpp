@@ -119,7 +119,7 @@ class StopsCheck {
     own.push_back(holding);
   }
 
-  /// Every tray was searched at each of its headings and at no other.
+  /// Every tray was searched at each of its headings and, unless it shares those of others, at no other.
   void check_headings() {
     for (const auto& [tray, searched] : plan_.searched) {
       const auto known = region_of_tray_.find(tray);
@@ -132,6 +132,7 @@ class StopsCheck {
           faults_.push_back({"region-malformed", "grid",
                              "has no layer for heading " + text(heading) + ", which tray '" + tray + "' lists"});
       }
+      if (searched.shares_headings) continue;
       for (int layer = 0; layer < static_cast<int>(plan_.grid.headings.size()); ++layer) {
         if (layers.count(layer) || !floor_.any(known->second, layer)) continue;
         faults_.push_back(

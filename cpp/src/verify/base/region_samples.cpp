@@ -21,10 +21,15 @@ struct Cell {
   int layer, ix, iy;
 };
 
-/// Cells of one region, and those beside it at the headings of its tray.
+bool lists(const CheckedTray& tray, double heading) {
+  return std::any_of(tray.headings.begin(), tray.headings.end(),
+                     [&](double known) { return std::abs(wrap_angle(known - heading)) <= 1e-6; });
+}
+
+/// Cells of one region, and those beside it that were searched for its tray.
 class RegionCells {
  public:
-  RegionCells(const PlanToCheck& plan, const CheckedRegion& region) : grid_(plan.grid), region_(region) {
+  RegionCells(const PlanToCheck& plan, const CheckedRegion& region) : plan_(plan), grid_(plan.grid), region_(region) {
     const auto searched = plan.searched.find(region.tray);
     for (int layer = 0; layer < static_cast<int>(grid_.headings.size()); ++layer) {
       for (int iy = 0; iy < grid_.ny; ++iy) {
@@ -51,7 +56,7 @@ class RegionCells {
  private:
   bool has(int layer, int ix, int iy) const {
     if (ix < 0 || iy < 0 || ix >= grid_.nx || iy >= grid_.ny) return false;
-    return region_.cells[(static_cast<std::size_t>(layer) * grid_.ny + iy) * grid_.nx + ix] != 0;
+    return region_.cells[index(layer, ix, iy)] != 0;
   }
 
   bool beside_region(const Cell& cell) const {
@@ -63,11 +68,24 @@ class RegionCells {
 
   bool was_searched(const Cell& cell, const CheckedTray& tray) const {
     const Eigen::Vector3d middle = pose(cell, 0.5, 0.5);
-    const bool listed = std::any_of(tray.headings.begin(), tray.headings.end(),
-                                    [&](double heading) { return std::abs(wrap_angle(heading - middle.z())) <= 1e-6; });
-    return listed && (middle.head<2>() - tray.middle).norm() <= tray.max_distance;
+    if ((middle.head<2>() - tray.middle).norm() > tray.max_distance) return false;
+    return lists(tray, middle.z()) || (tray.shares_headings && other_is_served(cell));
   }
 
+  /// Whether some tray is served there at a heading of its own.
+  bool other_is_served(const Cell& cell) const {
+    return std::any_of(plan_.regions.begin(), plan_.regions.end(), [&](const CheckedRegion& other) {
+      const auto tray = plan_.searched.find(other.tray);
+      return tray != plan_.searched.end() && lists(tray->second, grid_.headings[cell.layer]) &&
+             other.cells.size() == region_.cells.size() && other.cells[index(cell.layer, cell.ix, cell.iy)] != 0;
+    });
+  }
+
+  std::size_t index(int layer, int ix, int iy) const {
+    return (static_cast<std::size_t>(layer) * grid_.ny + iy) * grid_.nx + ix;
+  }
+
+  const PlanToCheck& plan_;
   const CheckedGrid& grid_;
   const CheckedRegion& region_;
 };

@@ -253,7 +253,7 @@ def test_a_pose_out_of_reach_is_named(tmp_path: Path) -> None:
     assert plan.optimum.unreachable[-1] == 300
     first = plan.optimum.unreachable.index(300)
     assert f"no arm configuration reaches pose {first} with 300 of the 300 grasps tried" in plan.obstruction
-    assert main(["pipe", str(path), "-o", str(tmp_path / "out")]) == 3
+    assert main(["pipe", str(path), "-o", str(tmp_path / "out")]) == 4
     assert not (tmp_path / "out" / "trajectory.csv").exists()
     assert f"reaches pose {first}" in (tmp_path / "out" / "report.html").read_text()
 

@@ -229,7 +229,7 @@ def test_no_plan_is_explained(
     small: dict[str, Any], write: Callable[..., Path], capfd: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     file = write(edited(small, "positioning_uncertainty", 0.9))
-    assert main(["plan", str(file), "-o", str(tmp_path), "--no-pictures"]) == 3
+    assert main(["plan", str(file), "-o", str(tmp_path), "--no-pictures"]) == 4
     assert "uncertainty" in capfd.readouterr().out
     plan = json.loads((tmp_path / "plan.json").read_text())
     assert plan["outcome"] != "solved"
@@ -244,7 +244,11 @@ def test_tray_out_of_reach_is_explained(
     scenario = edited(small, "trays.0.pose.xyz", [2.78, -1.3, 2.5])
     assert main(["plan", str(write(scenario)), "-o", str(tmp_path), "--no-pictures"]) == 3
     assert "A" in capfd.readouterr().out
-    assert any(o["tray"] == "A" for o in json.loads((tmp_path / "plan.json").read_text())["obstructions"])
+    plan = json.loads((tmp_path / "plan.json").read_text())
+    assert plan["outcome"] == "infeasible"  # proven: the arm is too short, wherever the base stands
+    assert any(o["tray"] == "A" for o in plan["obstructions"])
+    low = edited(small, "trays.0.pose.xyz", [2.78, -1.3, 1.35])  # out of reach too, but not for links stretched out
+    assert main(["plan", str(write(low)), "-o", str(tmp_path), "--no-pictures"]) == 4
 
 
 def test_parts_lie_where_the_grid_says(small_path: Path) -> None:

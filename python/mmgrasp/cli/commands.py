@@ -33,6 +33,7 @@ from ..scenario import load_scenario
 from .arguments import build_parser
 from .check import check_robot, describe
 from .console import Reporter, open_streams
+from .exit_codes import BAD_INPUT, DONE, FAULTY, INTERRUPTED, exit_code
 from .grasp import run_grasp
 from .grippers import run_grippers
 from .output_folder import OutputFolder
@@ -43,8 +44,6 @@ from .tables import bench_table, drive_by_summary, print_verdict, summary
 
 if TYPE_CHECKING:
     from ..reproduce.entry import Sweep
-
-DONE, FAULTY, BAD_INPUT, NO_PLAN, INTERRUPTED = 0, 1, 2, 3, 130
 
 
 def run_plan(arguments: argparse.Namespace, console: Console) -> int:
@@ -74,16 +73,6 @@ def run_plan(arguments: argparse.Namespace, console: Console) -> int:
         console.print(drive_by_summary(passing))
     console.print(f"report: {printable(str(arguments.out / page))}", markup=False, soft_wrap=True)
     return exit_code(plan.outcome)
-
-
-def exit_code(outcome: Outcome) -> int:
-    """Of an outcome."""
-    return {
-        Outcome.solved: DONE,
-        Outcome.stopped: INTERRUPTED,
-        Outcome.invalid_start: BAD_INPUT,
-        Outcome.invalid_goal: BAD_INPUT,
-    }.get(outcome, NO_PLAN)
 
 
 def write_outputs(plan: ScenarioPlan, out: Path, report: Callable[[str, float], None], pictures: bool) -> str:

@@ -7,15 +7,13 @@ import json
 
 from rich.console import Console
 
-from .._core import Outcome
 from .._files import printable, write_file
 from ..grippers.assembly_file import load_assembly
 from ..grippers.output import GRIPPER_FILES, GRIPPER_FOLDERS, result_to_dict, write_results
 from ..grippers.planning import GripperPlan, plan_grippers
 from .console import Reporter
+from .exit_codes import DONE, exit_code
 from .output_folder import OutputFolder
-
-DONE, NO_PLAN, INTERRUPTED = 0, 3, 130
 
 
 def run_grippers(arguments: argparse.Namespace, console: Console) -> int:
@@ -40,9 +38,7 @@ def run_grippers(arguments: argparse.Namespace, console: Console) -> int:
     else:
         _print(plan, console)
         console.print(f"report: {printable(str(arguments.out / 'report.html'))}", markup=False, soft_wrap=True)
-    if plan.outcome == Outcome.stopped:
-        return INTERRUPTED
-    return DONE if plan.solved else NO_PLAN
+    return DONE if plan.solved else exit_code(plan.outcome)
 
 
 def _print(plan: GripperPlan, console: Console) -> None:

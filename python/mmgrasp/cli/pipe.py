@@ -13,9 +13,8 @@ from ..pipes.output import PIPE_FILES, grasp_to_dict, result_to_dict, write_tabl
 from ..pipes.planning import PipePlan, plan_pipe
 from ..pipes.problem import load_pipe_problem
 from .console import Reporter
+from .exit_codes import DONE, exit_code
 from .output_folder import OutputFolder
-
-DONE, NO_PLAN, INTERRUPTED = 0, 3, 130
 
 
 def run_pipe(arguments: argparse.Namespace, console: Console) -> int:
@@ -48,9 +47,7 @@ def run_pipe(arguments: argparse.Namespace, console: Console) -> int:
     else:
         _print(plan, console)
         console.print(f"report: {printable(str(arguments.out / 'report.html'))}", markup=False, soft_wrap=True)
-    if plan.outcome == Outcome.stopped:
-        return INTERRUPTED
-    return DONE if plan.grasp is not None else NO_PLAN
+    return DONE if plan.grasp is not None and plan.outcome != Outcome.stopped else exit_code(plan.outcome)
 
 
 def _print(plan: PipePlan, console: Console) -> None:

@@ -30,9 +30,9 @@ from ..scan.objects import GUESSED_UP, KNOWN_UP, Segmentation, objects_to_dict, 
 from ..scan.progress_file import PROGRESS_FILE
 from ..scan.summary import scan_summary
 from .console import Reporter
+from .exit_codes import DONE, NOTHING_USABLE
 from .output_folder import LIST, OutputFolder
 
-DONE, NOTHING_USABLE = 0, 3
 MAP = "map.sdf"
 PARTIAL = "partial_*.sdf"
 SCAN_FILES = (

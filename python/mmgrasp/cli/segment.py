@@ -16,9 +16,9 @@ from .._core import InvalidInput
 from .._files import printable, write_file
 from ..scan.objects import pose_to_dict
 from .console import Reporter
+from .exit_codes import DONE
 from .output_folder import LIST, OutputFolder
 
-DONE = 0
 FORMAT, VERSION = "mmgrasp-segments", 1
 METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inch": 0.0254}
 FILES = ("segments.json", "segments.png", "diameters.png", LIST)

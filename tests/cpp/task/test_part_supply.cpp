@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/random.hpp"
 #include "mmgrasp/verify/plan_check.hpp"
 #include "support/small_storeroom.hpp"
 
@@ -176,7 +177,7 @@ TEST(PartSupply, APartWithoutGraspsIsNamed) {
   problem.trays[1].parts[0].grasps.clear();
   problem.trays[1].parts[0].grasps_too_wide = 7;
   const PartSupplyPlan plan = plan_part_supply(problem, database());
-  EXPECT_EQ(plan.outcome, Outcome::not_found);
+  EXPECT_EQ(plan.outcome, Outcome::infeasible);
   ASSERT_EQ(plan.obstructions.size(), 1u);
   EXPECT_EQ(plan.obstructions[0].tray, "B");
   EXPECT_EQ(plan.obstructions[0].part, "B/block_0");
@@ -204,6 +205,60 @@ TEST(PartSupply, MissingReachSaysHowFarToMove) {
   problem.scene.move("table", test::at(0.9 - nearer, 0, 0.42));
   const PartSupplyPlan fixed = plan_part_supply(problem, database());
   EXPECT_EQ(fixed.outcome, Outcome::solved) << all_messages(fixed);
+}
+
+/// A part that other parts cover may be freed, one under a lid not.
+TEST(PartSupply, OnlyWhatNoBasePoseAndNoArmReachesIsProven) {
+  PartSupplyProblem problem = test::small_storeroom(1);
+  problem.options.grid.resolution = 0.1;
+  Part& part = problem.trays[0].parts[0];
+  const Eigen::Vector3d on_table = part.T_world_part.translation();
+  const JointGroup stretched = problem.arm;
+  double highest = 0;
+  Rng rng(3);
+  for (int i = 0; i < 200000; ++i) {
+    Eigen::VectorXd q = stretched.sample_lower();
+    for (int k = 0; k < q.size(); ++k) q[k] = rng.uniform(q[k], stretched.sample_upper()[k]);
+    highest = std::max(highest, stretched.fk(q).translation().z());
+  }
+  part.T_world_part.translation().z() = highest - 0.01;  // the tool gets there, though not with the hand pointing down
+  EXPECT_EQ(plan_part_supply(problem, database()).outcome, Outcome::not_found);
+  part.T_world_part.translation().z() = highest + 0.5;
+  EXPECT_EQ(plan_part_supply(problem, database()).outcome, Outcome::infeasible);
+  part.T_world_part.translation() = on_table;
+  problem.scene.add("lid", test::box_shape(0.2, 0.2, 0.01),
+                    Pose(Eigen::Translation3d(on_table.x(), on_table.y(), 0.51)));
+  EXPECT_EQ(plan_part_supply(problem, database()).outcome, Outcome::infeasible);
+  problem.scene.remove("lid");
+  Part lid = problem.trays[1].parts[0];
+  lid.name = "B/lid";
+  lid.target = false;
+  lid.shapes[0].shape = test::box_shape(0.2, 0.2, 0.01);
+  lid.T_world_part = Pose(Eigen::Translation3d(on_table.x(), on_table.y(), 0.51));
+  problem.trays[1].parts.push_back(lid);
+  EXPECT_EQ(plan_part_supply(problem, database()).outcome, Outcome::not_found);
+}
+
+/// Under the roof every part can be grasped in front of the table, but not lifted; on its other side it can.
+TEST(PartSupply, WhereNoMotionIsFoundOtherStopsAreTried) {
+  PartSupplyProblem problem = test::small_storeroom();
+  problem.scene.add("roof", test::box_shape(0.5, 2.5, 0.01), test::at(0.55, 0, 0.85));
+  const PartSupplyPlan plan = plan_part_supply(problem, database());
+  ASSERT_EQ(plan.outcome, Outcome::solved) << all_messages(plan);
+  ASSERT_EQ(plan.stops.size(), 1u);
+  EXPECT_GT(plan.stops[0].pose.x(), 1.0);
+  EXPECT_TRUE(plan.proven_minimal);
+  const BaseRegion& region = plan.regions[0];
+  std::size_t in_front = 0;
+  for (int iy = 0; iy < plan.grid.ny; ++iy) {
+    for (int ix = 0; ix < plan.grid.nx; ++ix)
+      in_front += region.cells[plan.grid.index(0, ix, iy)] && plan.grid.centre(0, ix, iy).x() < 0.6;
+  }
+  EXPECT_GT(in_front, 50u);  // they stay in the region: what is proven is proven with them
+  verify::PlanCheckOptions options;
+  options.samples = 100;
+  for (const verify::Fault& fault : verify::check_plan(to_check(problem, plan), options).faults)
+    ADD_FAILURE() << fault.code << ", " << fault.where << ": " << fault.message;
 }
 
 TEST(PartSupply, AStartInCollisionIsRefusedByName) {

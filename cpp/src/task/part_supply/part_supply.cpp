@@ -1,6 +1,7 @@
 #include "mmgrasp/task/part_supply.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <set>
 
@@ -8,8 +9,10 @@
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/robot/detail/base_workspace.hpp"
 #include "task/base_region/region_search.hpp"
+#include "task/base_region/search_area.hpp"
 #include "task/base_sequence/base_routes.hpp"
 #include "task/part_supply/alternative_base_poses.hpp"
+#include "task/part_supply/impossible.hpp"
 #include "task/part_supply/obstructions.hpp"
 #include "task/part_supply/plan_intersections.hpp"
 #include "task/part_supply/stop_robustness.hpp"
@@ -23,6 +26,7 @@ namespace {
 constexpr int kRobustnessRounds = 5;
 constexpr double kRequiredRate = 0.999;   // Share of the base poses drawn at each stop that must work in the end.
 constexpr std::size_t kAlternatives = 4;  // Base poses tried where no motion was found at a stop.
+constexpr int kMotionRounds = 4;          // Sets of stops tried when no motion was found at some stop.
 constexpr std::size_t kNamedContacts = 3;
 
 /// Adds up the wall time of a stage.
@@ -80,7 +84,7 @@ class PartSupply {
   PartSupplyPlan run() {
     problem_.check();
     check_ends(problem_);
-    if (!find_regions() || !find_stops() || !plan_picks_and_route()) {
+    if (!find_regions() || !find_stops(plan_.regions) || !plan_picks_and_route_somewhere()) {
       if (monitor_.stopped()) {
         plan_.outcome = Outcome::stopped;
         plan_.obstructions.clear();
@@ -92,26 +96,31 @@ class PartSupply {
   }
 
  private:
+  /// A base pose from which no motion was found for a pick from this tray.
+  struct FailedPick {
+    Eigen::Vector3d pose;
+    TrayId tray;
+  };
+
   bool find_regions() {
     const StageClock clock(plan_, "base regions");
     plan_.grid = make_base_grid(problem_, database_);
     evaluator_.emplace(problem_, database_);
     plan_.regions = compute_base_regions(problem_, database_, plan_.grid, *evaluator_, monitor_);
     if (monitor_.stopped()) return false;
-    plan_.regions =
-        share_headings(problem_, database_, plan_.grid, std::move(plan_.regions), *evaluator_, monitor_);
+    plan_.regions = share_headings(problem_, database_, plan_.grid, std::move(plan_.regions), *evaluator_, monitor_);
     return !monitor_.stopped();
   }
 
-  bool find_stops() {
+  bool find_stops(std::vector<BaseRegion>& regions) {
     for (int round = 0;; ++round) {
-      if (!solve_stops()) {
+      if (!solve_stops(regions)) {
         explain_unreachable();
         return false;
       }
       const StageClock clock(plan_, "robustness");
       const RobustnessResult check =
-          check_robustness(problem_, *evaluator_, plan_.grid, plan_.stops, plan_.regions, monitor_);
+          check_robustness(problem_, *evaluator_, plan_.grid, plan_.stops, regions, monitor_);
       if (check.stopped) return false;
       plan_.robustness_rate = check.rate();
       if (check.cells_removed == 0 || round + 1 == kRobustnessRounds) {
@@ -120,21 +129,21 @@ class PartSupply {
     }
   }
 
-  bool solve_stops() {
+  bool solve_stops(const std::vector<BaseRegion>& regions) {
     const StageClock clock(plan_, "intersections and stops");
     StopOptions options;
     options.min_radius = problem_.options.positioning_uncertainty;
     options.route_length = [this](const std::vector<Stop>& stops) {
       return straight_route_length(stops, problem_.start.head<2>(), problem_.goal.head<2>());
     };
-    StopSet set = plan_stops_exact(plan_.grid, plan_.regions, options, monitor_);
+    StopSet set = plan_stops_exact(plan_.grid, regions, options, monitor_);
     plan_.stops = std::move(set.stops);
     plan_.lower_bound = set.lower_bound;
     plan_.proven_minimal = set.outcome == Outcome::solved;
     unreachable_ = std::move(set.unreachable_trays);
     if (set.outcome == Outcome::timeout) plan_.outcome = Outcome::timeout;
     plan_.intersections =
-        plan_intersections(plan_.grid, plan_.regions, options.min_radius, std::move(set.candidates), plan_.stops);
+        plan_intersections(plan_.grid, regions, options.min_radius, std::move(set.candidates), plan_.stops);
     return set.outcome == Outcome::solved || set.outcome == Outcome::approximate;
   }
 
@@ -142,12 +151,54 @@ class PartSupply {
     for (TrayId tray : unreachable_) {
       plan_.obstructions.push_back(
           explain_region(problem_, database_, *evaluator_, plan_.grid, tray, plan_.regions[tray], plan_.obstructions));
+      if (grasp_is_impossible(problem_, *evaluator_, tray)) plan_.outcome = Outcome::infeasible;
     }
   }
 
   bool obstructed(Obstruction obstruction) {
     plan_.obstructions.push_back(std::move(obstruction));
     return false;
+  }
+
+  /// When no motion is found at a stop, other stops are sought without the base poses that failed, as long as they are
+  /// no more: the proof is that of the regions. What is told in the end is why the first ones failed.
+  bool plan_picks_and_route_somewhere() {
+    PartSupplyPlan first;
+    std::vector<BaseRegion> left;
+    for (int round = 0;; ++round) {
+      failed_.clear();
+      if (plan_picks_and_route()) return true;
+      if (round == 0) {
+        first = plan_;
+        left = plan_.regions;
+      }
+      if (failed_.empty() || monitor_.stopped() || round + 1 == kMotionRounds) break;
+      for (const FailedPick& failed : failed_) close_cell(failed, left);
+      start_again(first);
+      if (!find_stops(left) || plan_.stops.size() > first.stops.size()) break;
+      plan_.lower_bound = first.lower_bound;
+      plan_.proven_minimal = first.proven_minimal;
+    }
+    plan_ = std::move(first);
+    return false;
+  }
+
+  void start_again(const PartSupplyPlan& first) {
+    plan_.picks.clear();
+    plan_.route.clear();
+    plan_.obstructions.clear();
+    plan_.outcome = first.outcome;
+  }
+
+  /// Takes the cell of a base pose from the region of the tray whose pick found no motion there.
+  void close_cell(const FailedPick& failed, std::vector<BaseRegion>& regions) const {
+    const BaseGrid& grid = plan_.grid;
+    const Eigen::Vector2d cell = (failed.pose.head<2>() - grid.origin) / grid.resolution;
+    const int ix = static_cast<int>(std::floor(cell.x())), iy = static_cast<int>(std::floor(cell.y()));
+    for (int layer = 0; layer < static_cast<int>(grid.headings.size()); ++layer) {
+      if (std::abs(wrap_angle(grid.headings[layer] - failed.pose.z())) < kSameHeading)
+        regions[failed.tray].cells[grid.index(layer, ix, iy)] = 0;
+    }
   }
 
   bool plan_picks_and_route() {
@@ -201,19 +252,26 @@ class PartSupply {
     Stop& stop = plan_.stops[index];
     const std::vector<PartRef> left = remaining(picked);
     StopPicks found = plan_stop_picks(problem_, database_, stop.pose, stop.trays, left, monitor_);
+    std::vector<FailedPick> failed;
+    const auto note = [&](const StopPicks& picks, const Eigen::Vector3d& pose) {
+      for (const Pick& pick : picks.picks) failed.push_back({pose, pick.part.tray});
+    };
     if (found.outcome == Outcome::not_found) {
       const StopPicks first = found;
+      note(first, stop.pose);
       for (const Stop& other :
            alternative_base_poses(plan_.grid, plan_.regions, stop, problem_.options.positioning_uncertainty,
                                   2 * plan_.grid.resolution, kAlternatives)) {
         if (routes.between(problem_.start, other.pose).outcome != Outcome::solved) continue;
         found = plan_stop_picks(problem_, database_, other.pose, other.trays, left, monitor_);
+        if (found.outcome == Outcome::not_found) note(found, other.pose);
         if (found.outcome == Outcome::solved && !still_robust(other)) found.outcome = Outcome::not_found;
         if (found.outcome == Outcome::solved) stop = other;
         if (found.outcome != Outcome::not_found) break;
       }
       if (found.outcome == Outcome::not_found) {
         for (const Pick& pick : first.picks) obstructed(explain_motion(problem_, stop.pose, pick));
+        failed_ = std::move(failed);
         return false;
       }
     }
@@ -266,6 +324,7 @@ class PartSupply {
   PartSupplyPlan plan_;
   std::optional<BasePoseEvaluator> evaluator_;  // with all parts in place; built once
   std::vector<TrayId> unreachable_;
+  std::vector<FailedPick> failed_;
 };
 
 }  // namespace

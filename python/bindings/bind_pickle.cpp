@@ -76,10 +76,13 @@ BaseRegion region_of(const py::tuple& s) {
 /// No __setstate__: it would need an object that nothing has made yet.
 template <class Class, class State, class Made>
 void pickles(py::class_<Class>& declared_class, State state, Made made) {
-  declared_class.def_static("_from_state", made, py::arg("state"));
+  using Tuple = py::typing::Tuple<py::object, py::ellipsis>;
+  declared_class.def_static(
+      "_from_state", [made](const Tuple& values) { return made(values); }, py::arg("state"));
   declared_class.def("__reduce__", [state](const py::object& self) {
     const py::object restored = py::module_::import("mmgrasp._pickling").attr("restored");
-    return py::make_tuple(restored, py::make_tuple(py::type::of(self), state(py::cast<const Class&>(self))));
+    const py::object content = state(py::cast<const Class&>(self));
+    return Tuple(py::make_tuple(restored, py::make_tuple(py::type::of(self), content)));
   });
 }
 

@@ -208,6 +208,23 @@ void bind_picks(py::module_& m) {
       py::arg("remaining"),
       "One pick from a base pose; `remaining` are the (tray, part) still in place, the picked one among them.");
   m.def(
+      "plan_stop_picks",
+      [](const PartSupplyProblem& problem, const ReachDatabase& database, const ArrayLike& base_pose,
+         const std::vector<int>& trays, const std::vector<std::pair<int, int>>& remaining, const Progress& progress) {
+        const Eigen::Vector3d base = vector3_argument(base_pose, "base_pose");
+        const std::vector<PartRef> left = parts_argument(remaining);
+        const std::vector<TrayId> served(trays.begin(), trays.end());
+        StopPicks found = LongCall(progress).run(
+            [&](const Monitor& monitor) { return plan_stop_picks(problem, database, base, served, left, monitor); });
+        return std::pair(found.outcome, std::move(found.picks));
+      },
+      py::arg("problem"), py::arg("database"), py::arg("base_pose"), py::arg("trays"), py::arg("remaining"),
+      py::kw_only(), py::arg("progress") = py::none(),
+      "Every pick of a stop from where the base really stands: the target parts of these trays among `remaining`, the\n"
+      "(tray, part) still in place. Returns how it ended and the picks in order; without a solution those that "
+      "failed.\n"
+      "InvalidInput when the robot at home is not free there.");
+  m.def(
       "plan_object_pick",
       [](const JointGroup& arm, const Hand& gripper, const World& world, const std::string& object,
          std::vector<Grasp> grasps, const ReachDatabase& database, const ArrayLike& home, const ArrayLike& base_pose,

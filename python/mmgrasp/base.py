@@ -67,6 +67,7 @@ from ._core import (
     PickMotion as PickMotion,
     Pick as Pick,
     plan_pick as plan_pick,
+    plan_stop_picks as plan_stop_picks,
     plan_object_pick as plan_object_pick,
     Obstruction as Obstruction,
 )

@@ -26,7 +26,17 @@ def build_parser() -> argparse.ArgumentParser:
     parser = _Parser(prog="mmgrasp", description="Planning for mobile manipulators.")
     parser.add_argument("--version", action="version", version=f"mmgrasp {_core.__version__}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="command", parser_class=_Parser)
-    adders = (_add_plan, _add_verify, _add_check, _add_scan, _add_grasp, _add_pipe, _add_segment, _add_grippers)
+    adders = (
+        _add_plan,
+        _add_verify,
+        _add_arrive,
+        _add_check,
+        _add_scan,
+        _add_grasp,
+        _add_pipe,
+        _add_segment,
+        _add_grippers,
+    )
     for add in (*adders, _add_reproduce, _add_bench, _add_view):
         add(commands)
     return parser
@@ -64,6 +74,22 @@ def _add_verify(commands: Commands) -> None:
     )
     parser.add_argument("--threads", type=_threads, metavar="N", help="0: all (default)")
     parser.add_argument("--json", action="store_true", help="print the verdict as JSON")
+
+
+def _add_arrive(commands: Commands) -> None:
+    parser = commands.add_parser("arrive", help="plan the picks of a stop again, from where the base really stands")
+    parser.add_argument("plan", type=_path, help="plan.json")
+    parser.add_argument(
+        "--stop", type=_count(1, 1_000_000, "stops"), required=True, metavar="K", help="the plan's K-th stop, from 1"
+    )
+    parser.add_argument(
+        "--pose", type=float, nargs=3, required=True, metavar=("X", "Y", "THETA"), help="measured base pose [m, m, rad]"
+    )
+    parser.add_argument("--picked", nargs="+", default=[], metavar="PART", help="parts that are gone already")
+    parser.add_argument("--scenario", type=_path, metavar="FILE", help="the plan's scenario, where it has moved")
+    parser.add_argument("--robot", metavar="NAME", help="the robot profile the plan was made with")
+    parser.add_argument("-o", "--out", type=_path, metavar="DIR", help="write arrival.json and the trajectories there")
+    parser.add_argument("--json", action="store_true", help="print arrival.json")
 
 
 def _add_check(commands: Commands) -> None:

@@ -31,6 +31,7 @@ from ..part_supply import (
 from ..part_supply.plan_file import check_names
 from ..scenario import load_scenario
 from .arguments import build_parser
+from .arrive import run_arrive
 from .check import check_robot, describe
 from .console import Reporter, open_streams
 from .exit_codes import BAD_INPUT, DONE, FAULTY, INTERRUPTED, exit_code
@@ -234,6 +235,7 @@ COMMANDS = {
     "reproduce": run_reproduce,
     "bench": run_bench,
     "view": run_view,
+    "arrive": run_arrive,
 }
 
 

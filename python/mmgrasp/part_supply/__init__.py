@@ -1,9 +1,11 @@
 """The main job: a storeroom's parts are picked and supplied (P1).
 
 A scenario is planned (`plan_part_supply`), parts may be taken in passing (`plan_drive_by_picks`), plans are written to and
-read from plan.json (`read_plan`, `plan_schema`), and checked again without the planner (`verify_plan`).
+read from plan.json (`read_plan`, `plan_schema`), planned again from where the base really stands (`arrive`), and checked again without the planner (`verify_plan`).
 """
 
+from .arrival import Arrival as Arrival
+from .arrival import arrive as arrive
 from .drive_by import DriveByPick as DriveByPick
 from .drive_by import DriveByPlan as DriveByPlan
 from .drive_by import plan_drive_by_picks as plan_drive_by_picks

@@ -50,7 +50,7 @@ def plan_to_dict(scenario: Scenario, plan: PartSupplyPlan, timings: list[tuple[s
             }
             for leg in plan.route
         ],
-        "picks": [_pick(pick, scenario) for pick in plan.picks],
+        "picks": [pick_to_dict(pick, scenario) for pick in plan.picks],
         "robustness_rate": plan.robustness_rate,
         "obstructions": [o.to_dict() for o in plan.obstructions],
         "timings": [{"stage": stage, "seconds": seconds} for stage, seconds in timings],
@@ -230,7 +230,7 @@ def _intersection(intersection: _core.Intersection, names: list[str]) -> dict[st
     }
 
 
-def _pick(pick: _core.Pick, scenario: Scenario) -> dict[str, Any]:
+def pick_to_dict(pick: _core.Pick, scenario: Scenario) -> dict[str, Any]:
     tray = scenario.trays[pick.tray].tray
     motions = []
     for motion in pick.motions:

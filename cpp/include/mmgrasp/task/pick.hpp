@@ -74,6 +74,20 @@ struct MMGRASP_EXPORT PickProblem {
 MMGRASP_EXPORT Pick plan_object_pick(const PickProblem& problem, const ReachDatabase& database,
                                      const Monitor& monitor = {});
 
+/// The picks at one stop of the base.
+struct MMGRASP_EXPORT StopPicks {
+  Outcome outcome = Outcome::not_found;
+  std::vector<Pick> picks;  ///< The picks in order; with no solution, those that failed.
+};
+
+/// Every pick of a stop, from where the base really stands: for what was measured after arriving. Those of the target
+/// parts of these trays that are among `remaining`, the parts still in place; parts nearest to the base first, later
+/// where others must leave before. Motions join as plain numbers, beginning at home. Planned in parallel, the same
+/// answer at any thread count. Throws InvalidInput when the robot at home is not free at the base pose.
+MMGRASP_EXPORT StopPicks plan_stop_picks(const PartSupplyProblem& problem, const ReachDatabase& database,
+                                         const Eigen::Vector3d& base_pose, const std::vector<TrayId>& trays,
+                                         const std::vector<PartRef>& remaining, const Monitor& monitor = {});
+
 /// Picks a part of a part-supply problem from a base pose and puts it into the bin on the robot. `remaining` are the
 /// parts still in place, the picked one among them.
 MMGRASP_EXPORT Pick plan_pick(const PartSupplyProblem& problem, const ReachDatabase& database,

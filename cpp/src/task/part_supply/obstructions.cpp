@@ -18,20 +18,6 @@ std::string motion_advice(const std::string& stage) {
 
 }  // namespace
 
-std::string pose_text(const Eigen::Vector3d& pose) {
-  std::ostringstream out;
-  out.precision(6);
-  out << "(" << pose.x() << ", " << pose.y() << ", " << pose.z() << ")";
-  return out.str();
-}
-
-std::string six_digits(double value) {
-  std::ostringstream out;
-  out.precision(6);
-  out << value;
-  return out.str();
-}
-
 Obstruction explain_robustness(const RobustnessResult& check, const std::vector<Stop>& stops) {
   Obstruction obstruction;
   obstruction.stage = "robustness";

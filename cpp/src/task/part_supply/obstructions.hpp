@@ -5,6 +5,7 @@
 #include "mmgrasp/task/base_pose_evaluator.hpp"
 #include "mmgrasp/task/part_supply.hpp"
 #include "task/part_supply/stop_robustness.hpp"
+#include "task/problem/wording.hpp"
 
 namespace mmgrasp::detail {
 
@@ -25,11 +26,5 @@ Obstruction explain_long_search(const Eigen::Vector3d& pose, const std::string& 
 
 /// Explains that no arm motion was found for this pick from a base pose.
 Obstruction explain_motion(const PartSupplyProblem& problem, const Eigen::Vector3d& base_pose, const Pick& failed);
-
-/// "(x, y, theta)" for messages.
-std::string pose_text(const Eigen::Vector3d& pose);
-
-/// Six significant digits.
-std::string six_digits(double value);
 
 }  // namespace mmgrasp::detail

@@ -7,7 +7,6 @@
 
 #include "mmgrasp/core/detail/stopwatch.hpp"
 #include "mmgrasp/core/error.hpp"
-#include "mmgrasp/robot/detail/base_workspace.hpp"
 #include "task/base_region/region_search.hpp"
 #include "task/base_region/search_area.hpp"
 #include "task/base_sequence/base_routes.hpp"
@@ -19,6 +18,7 @@
 #include "task/pick/joined_motions.hpp"
 #include "task/pick/stop_picks.hpp"
 #include "task/problem/scene.hpp"
+#include "task/problem/standing.hpp"
 
 namespace mmgrasp::detail {
 namespace {
@@ -27,7 +27,6 @@ constexpr int kRobustnessRounds = 5;
 constexpr double kRequiredRate = 0.999;   // Share of the base poses drawn at each stop that must work in the end.
 constexpr std::size_t kAlternatives = 4;  // Base poses tried where no motion was found at a stop.
 constexpr int kMotionRounds = 4;          // Sets of stops tried when no motion was found at some stop.
-constexpr std::size_t kNamedContacts = 3;
 
 /// Adds up the wall time of a stage.
 class StageClock {
@@ -52,30 +51,6 @@ class StageClock {
   Stopwatch stopwatch_;
 };
 
-/// Start, goal and home must be sound before anything is planned.
-void check_ends(const PartSupplyProblem& problem) {
-  CollisionChecker checker(problem.arm, world_with_parts(problem, all_parts(problem)));
-  for (const auto& [name, pose] : {std::pair{"start", problem.start}, std::pair{"goal", problem.goal}}) {
-    if (!in_workspace(problem.robot.base_limits(), pose)) {
-      throw InvalidInput(std::string(name) + " = " + pose_text(pose) + ": must lie within base_limits.workspace (" +
-                         six_digits(problem.robot.base_limits().workspace) + " m)");
-    }
-    checker.set_root(pose_from_planar(pose));
-    if (checker.is_free(problem.home)) continue;
-    std::string pairs;
-    bool self = false;
-    std::size_t named = 0;
-    for (const Contact& contact : checker.contacts(problem.home)) {
-      if (named++ >= kNamedContacts) break;
-      pairs += (pairs.empty() ? "" : ", ") + describe(contact);
-      self = self || !contact.with_scene;
-    }
-    if (self) throw InvalidInput("home: " + pairs + "; the robot must be free of self-collision at home");
-    throw InvalidInput(std::string(name) + " = " + pose_text(pose) + ": " + pairs +
-                       "; the robot at home must be free there");
-  }
-}
-
 class PartSupply {
  public:
   PartSupply(const PartSupplyProblem& problem, const ReachDatabase& database, const Monitor& monitor)
@@ -83,7 +58,8 @@ class PartSupply {
 
   PartSupplyPlan run() {
     problem_.check();
-    check_ends(problem_);
+    for (const auto& [name, pose] : {std::pair{"start", problem_.start}, std::pair{"goal", problem_.goal}})
+      require_standing(problem_, name, pose, all_parts(problem_));
     if (!find_regions() || !find_stops(plan_.regions) || !plan_picks_and_route_somewhere()) {
       if (monitor_.stopped()) {
         plan_.outcome = Outcome::stopped;
@@ -251,7 +227,7 @@ class PartSupply {
     const StageClock clock(plan_, "picks");
     Stop& stop = plan_.stops[index];
     const std::vector<PartRef> left = remaining(picked);
-    StopPicks found = plan_stop_picks(problem_, database_, stop.pose, stop.trays, left, monitor_);
+    StopPicks found = stop_picks(problem_, database_, stop.pose, stop.trays, left, monitor_);
     std::vector<FailedPick> failed;
     const auto note = [&](const StopPicks& picks, const Eigen::Vector3d& pose) {
       for (const Pick& pick : picks.picks) failed.push_back({pose, pick.part.tray});
@@ -263,7 +239,7 @@ class PartSupply {
            alternative_base_poses(plan_.grid, plan_.regions, stop, problem_.options.positioning_uncertainty,
                                   2 * plan_.grid.resolution, kAlternatives)) {
         if (routes.between(problem_.start, other.pose).outcome != Outcome::solved) continue;
-        found = plan_stop_picks(problem_, database_, other.pose, other.trays, left, monitor_);
+        found = stop_picks(problem_, database_, other.pose, other.trays, left, monitor_);
         if (found.outcome == Outcome::not_found) note(found, other.pose);
         if (found.outcome == Outcome::solved && !still_robust(other)) found.outcome = Outcome::not_found;
         if (found.outcome == Outcome::solved) stop = other;

@@ -4,8 +4,11 @@
 #include <map>
 #include <set>
 
+#include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/parallel.hpp"
+#include "task/pick/joined_motions.hpp"
 #include "task/problem/scene.hpp"
+#include "task/problem/standing.hpp"
 
 namespace mmgrasp::detail {
 namespace {
@@ -13,10 +16,13 @@ namespace {
 constexpr int kRounds = 6;
 
 std::vector<PartRef> first_order(const PartSupplyProblem& problem, const Eigen::Vector3d& base_pose,
-                                 const std::vector<TrayId>& trays) {
+                                 const std::vector<TrayId>& trays, const std::vector<PartRef>& remaining) {
   std::vector<PartRef> order;
   for (TrayId tray : trays) {
-    std::vector<PartRef> here = target_parts(problem, tray);
+    std::vector<PartRef> here;
+    for (const PartRef& target : target_parts(problem, tray)) {
+      if (std::count(remaining.begin(), remaining.end(), target) > 0) here.push_back(target);
+    }
     const auto distance = [&](const PartRef& id) {
       return (part_of(problem, id).T_world_part.translation().head<2>() - base_pose.head<2>()).norm();
     };
@@ -37,11 +43,10 @@ std::vector<PartRef> without(const std::vector<PartRef>& parts, const std::set<P
 
 }  // namespace
 
-StopPicks plan_stop_picks(const PartSupplyProblem& problem, const ReachDatabase& database,
-                          const Eigen::Vector3d& base_pose, const std::vector<TrayId>& trays,
-                          const std::vector<PartRef>& remaining, const Monitor& monitor) {
+StopPicks stop_picks(const PartSupplyProblem& problem, const ReachDatabase& database, const Eigen::Vector3d& base_pose,
+                     const std::vector<TrayId>& trays, const std::vector<PartRef>& remaining, const Monitor& monitor) {
   StopPicks result;
-  std::vector<PartRef> order = first_order(problem, base_pose, trays);
+  std::vector<PartRef> order = first_order(problem, base_pose, trays, remaining);
   std::map<PartRef, std::pair<std::set<PartRef>, Pick>> known;  // with the parts that were gone when it was planned
   for (int round = 0; round < kRounds; ++round) {
     std::vector<std::pair<PartRef, std::set<PartRef>>> open;
@@ -83,3 +88,27 @@ StopPicks plan_stop_picks(const PartSupplyProblem& problem, const ReachDatabase&
 }
 
 }  // namespace mmgrasp::detail
+
+namespace mmgrasp {
+
+StopPicks plan_stop_picks(const PartSupplyProblem& problem, const ReachDatabase& database,
+                          const Eigen::Vector3d& base_pose, const std::vector<TrayId>& trays,
+                          const std::vector<PartRef>& remaining, const Monitor& monitor) {
+  const std::vector<PartRef> all = detail::all_parts(problem);
+  for (auto part = remaining.begin(); part != remaining.end(); ++part) {
+    require(std::count(all.begin(), all.end(), *part) == 1, "remaining", part->part, "must be parts of the problem");
+    require(std::count(remaining.begin(), part, *part) == 0, "remaining", part->part, "must not be named twice");
+  }
+  for (auto tray = trays.begin(); tray != trays.end(); ++tray) {
+    require(*tray >= 0 && *tray < static_cast<int>(problem.trays.size()), "trays", *tray, "must be the problem's");
+    require(std::count(trays.begin(), tray, *tray) == 0, "trays", *tray, "must not be named twice");
+  }
+  detail::require_standing(problem, "base_pose", base_pose, remaining);
+  StopPicks found = detail::stop_picks(problem, database, base_pose, trays, remaining, monitor);
+  if (found.outcome != Outcome::solved) return found;
+  Eigen::VectorXd at = problem.home;
+  for (Pick& pick : found.picks) at = detail::join_motions(problem.arm.wraps(), at, pick.motions);
+  return found;
+}
+
+}  // namespace mmgrasp

@@ -226,8 +226,25 @@ void bind_sdf(py::module_& m) {
           [](const ProbabilisticSdf& sdf, const ArrayLike& origins, const ArrayLike& directions, int threads) {
             const Eigen::Matrix3Xd from = columns_argument(origins, "origins"),
                                    along = columns_argument(directions, "directions");
-            py::gil_scoped_release release;
-            return sdf.cast_rays(from, along, threads);
+            const bool sound = from.cols() == along.cols() && from.allFinite() && along.allFinite() &&
+                               (along.array() != 0).colwise().any().all();
+            if (!sound) return sdf.cast_rays(from, along, threads);  // says what is wrong
+            SdfHits hits;
+            hits.hit.resize(from.cols());
+            hits.distance.resize(from.cols());
+            hits.point.resize(3, from.cols());
+            hits.normal.resize(3, from.cols());
+            hits.sigma.resize(from.cols());
+            in_pieces(from.cols(), [&](Eigen::Index first, Eigen::Index count) {
+              const SdfHits piece =
+                  sdf.cast_rays(from.middleCols(first, count), along.middleCols(first, count), threads);
+              std::copy(piece.hit.begin(), piece.hit.end(), hits.hit.begin() + first);
+              hits.distance.segment(first, count) = piece.distance;
+              hits.point.middleCols(first, count) = piece.point;
+              hits.normal.middleCols(first, count) = piece.normal;
+              hits.sigma.segment(first, count) = piece.sigma;
+            });
+            return hits;
           },
           "origins"_a, "directions"_a, "threads"_a = 0,
           "The first surface from the front along each ray, (n, 3) both. Unknown space does not stop a ray.")

@@ -151,7 +151,8 @@ TEST(Advice, AppliedItSolvesNineOfTenSeededFailures) {
     SCOPED_TRACE("failure " + std::to_string(number));
     const PartSupplyProblem problem = seeded_failure(number);
     const PartSupplyPlan failed = plan_part_supply(problem, database());
-    ASSERT_EQ(failed.outcome, Outcome::not_found);
+    // Proven where the hand hits the scene at every grasp of some part, other parts gone.
+    ASSERT_TRUE(failed.outcome == Outcome::not_found || failed.outcome == Outcome::infeasible);
     ASSERT_FALSE(failed.obstructions.empty());
     for (const Obstruction& told : failed.obstructions) {
       EXPECT_FALSE(told.tray.empty());

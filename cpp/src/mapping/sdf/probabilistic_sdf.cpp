@@ -64,6 +64,7 @@ IntegrationReport ProbabilisticSdf::integrate(const DepthImage& image, const Dep
                                               const FrameUncertainty& uncertainty) {
   // Copies and fields of this map keep what they had.
   if (grid_.use_count() > 1) grid_ = std::make_shared<detail::SdfGrid>(*grid_);
+  grid_->forget_crossing_cells();
   return detail::integrate_frame(*grid_, image, camera, uncertainty);
 }
 
@@ -105,10 +106,11 @@ SdfHits ProbabilisticSdf::cast_rays(const Eigen::Matrix3Xd& origins, const Eigen
   out.normal.setConstant(3, count, kNaN);
   out.sigma.setConstant(count, kNaN);
   const Eigen::AlignedBox3d bounds = grid_->bounds();
+  const std::shared_ptr<detail::CrossingCells> crossing = grid_->crossing_cells();
   by_pieces(count, kRaysOfItem, threads, [&](Eigen::Index first, Eigen::Index last) {
     detail::SdfSampler sampler(*grid_);
     for (Eigen::Index i = first; i < last; ++i) {
-      const double t = detail::first_crossing(*grid_, bounds, sampler, origins.col(i), directions.col(i));
+      const double t = detail::first_crossing(*grid_, *crossing, bounds, sampler, origins.col(i), directions.col(i));
       if (std::isnan(t)) continue;
       const Eigen::Vector3d point = origins.col(i) + t * directions.col(i);
       Eigen::Vector3d normal = sampler.direction(point);

@@ -47,55 +47,73 @@ class CellWalk {
   bool left_ = false;
 };
 
+/// The map between the eight corners of one cell, along a ray.
+class CellAlongRay {
+ public:
+  CellAlongRay(const SdfGrid& grid, SdfSampler& sampler, const BlockKey& cell, const Vector3d& origin,
+               const Vector3d& direction)
+      : first_(origin / grid.options.voxel - Vector3d(cell.x, cell.y, cell.z)), slope_(direction / grid.options.voxel) {
+    sampler.corners(cell.x, cell.y, cell.z, mean_);
+  }
+  double mean(double t) const {
+    float place[3];
+    for (int k = 0; k < 3; ++k) place[k] = static_cast<float>(std::clamp(first_[k] + t * slope_[k], 0.0, 1.0));
+    return SdfSampler::trilinear(mean_, place);
+  }
+
+ private:
+  Vector3d first_, slope_;
+  float mean_[8];
+};
+
 class Marcher {
  public:
   Marcher(const SdfGrid& grid, SdfSampler& sampler, const Vector3d& origin, const Vector3d& direction)
-      : sampler_(sampler), origin_(origin), direction_(direction), metre_(1 / direction.norm()) {
-    least_ = 0.5 * grid.options.voxel * metre_;
+      : grid_(grid), sampler_(sampler), origin_(origin), direction_(direction) {
+    half_voxel_ = 0.5 * grid.options.voxel / direction.norm();
     enough_ = 1e-4 * grid.options.voxel;
   }
 
-  /// Marches through a stretch where blocks are; true when the surface was crossed.
-  bool march(double begin, double end) {
-    double t = std::max(begin, next_);
-    while (t < end) {
-      const Sample here = sampler_.at(origin_ + t * direction_);
-      if (here.known && here.mean <= 0 && in_front_) {
-        crossing_ = refine(last_t_, last_mean_, t, here.mean);
-        return true;
-      }
-      in_front_ = here.known && here.mean > 0;
-      last_t_ = t;
-      last_mean_ = here.mean;
-      // The distance bounds the way to the surface, but for noise and slant: go less far. Where nothing is known yet,
-      // less than the 1.75 voxels that are known in front of every surface.
-      t += in_front_ ? std::max(least_, 0.7 * here.mean * metre_) : 2.8 * least_;
+  /// First crossing from the front within a cell that the ray is in from t = begin to t = end; NaN: none. Between
+  /// looks half a voxel apart it is crossed once at most.
+  double crossing(const BlockKey& cell, double begin, double end) const {
+    const CellAlongRay along(grid_, sampler_, cell, origin_, direction_);
+    double last = begin, last_mean = along.mean(begin);
+    if (last_mean <= 0 && from_the_front(begin)) return begin;
+    const int steps = std::max(1, static_cast<int>(std::ceil((end - begin) / half_voxel_)));
+    for (int i = 1; i <= steps; ++i) {
+      const double t = begin + (end - begin) * i / steps, mean = along.mean(t);
+      if (last_mean > 0 && mean <= 0) return refine(along, last, last_mean, t, mean);
+      last = t;
+      last_mean = mean;
     }
-    next_ = t;
-    return false;
+    return kNone;
   }
-  /// Between blocks nothing is known.
-  void leave() { in_front_ = false; }
-  double crossing() const { return crossing_; }
 
  private:
-  double refine(double a, double fa, double b, double fb) {
-    for (int k = 0; k < 4; ++k) {
-      const double t = a + (b - a) * std::clamp(fa / (fa - fb), 0.05, 0.95);
-      const Sample here = sampler_.at(origin_ + t * direction_);
-      if (!here.known) break;
-      if (std::abs(here.mean) < enough_) return t;
-      (here.mean > 0 ? a : b) = t;
-      (here.mean > 0 ? fa : fb) = here.mean;
+  /// Where voxels were only looked through, cells do not fit together: one can be in front, the next behind. And a
+  /// crossing on the border of two cells may, by rounding, be in neither.
+  bool from_the_front(double t) const {
+    constexpr double kBefore = 0.1;  // half voxels: far enough to tell the side from roundings
+    if (t - kBefore * half_voxel_ <= 0) return false;
+    const Sample before = sampler_.at(origin_ + (t - kBefore * half_voxel_) * direction_);
+    return before.known && before.mean > 0;
+  }
+
+  double refine(const CellAlongRay& along, double a, double fa, double b, double fb) const {
+    for (int k = 0; k < 8; ++k) {
+      const double t = a + (b - a) * std::clamp(fa / (fa - fb), 0.05, 0.95), mean = along.mean(t);
+      if (std::abs(mean) < enough_) return t;
+      (mean > 0 ? a : b) = t;
+      (mean > 0 ? fa : fb) = mean;
     }
     return a + (b - a) * fa / (fa - fb);
   }
 
+  const SdfGrid& grid_;
   SdfSampler& sampler_;
   const Vector3d &origin_, &direction_;
-  double metre_, least_ = 0, enough_ = 0;
-  double next_ = -kInfinity, last_t_ = 0, last_mean_ = 0, crossing_ = kNone;
-  bool in_front_ = false;
+  double half_voxel_ = 0, enough_ = 0;
 };
 
 bool clip(const Eigen::AlignedBox3d& box, const Vector3d& origin, const Vector3d& direction, double& begin,
@@ -114,30 +132,32 @@ bool clip(const Eigen::AlignedBox3d& box, const Vector3d& origin, const Vector3d
 
 }  // namespace
 
-double first_crossing(const SdfGrid& grid, const Eigen::AlignedBox3d& bounds, SdfSampler& sampler,
-                      const Vector3d& origin, const Vector3d& direction) {
+double first_crossing(const SdfGrid& grid, CrossingCells& crossing, const Eigen::AlignedBox3d& bounds,
+                      SdfSampler& sampler, const Vector3d& origin, const Vector3d& direction) {
   double begin = 0, end = kInfinity;
   if (bounds.isEmpty() || !clip(bounds, origin, direction, begin, end)) return kNone;
-  const double block = kBlockSide * grid.options.voxel;
-  Marcher marcher(grid, sampler, origin, direction);
+  const double voxel = grid.options.voxel, block = kBlockSide * voxel;
+  const Marcher marcher(grid, sampler, origin, direction);
   const BlockKey lowest{-kMostBlocks, -kMostBlocks, -kMostBlocks}, highest{kMostBlocks, kMostBlocks, kMostBlocks};
   for (CellWalk wide(origin, direction, kBlockSide * block, begin, end, lowest, highest); !wide.done();
        wide.advance()) {
     const BlockKey outer = wide.cell(), first{8 * outer.x, 8 * outer.y, 8 * outer.z},
                    last{first.x + 7, first.y + 7, first.z + 7};
     const int at = grid.mask_table.find(outer.packed());
-    if (at < 0) {
-      marcher.leave();
-      continue;
-    }
+    if (at < 0) continue;
     const BlockMask& mask = grid.masks[at];
     for (CellWalk walk(origin, direction, block, wide.begin(), wide.end(), first, last); !walk.done(); walk.advance()) {
-      const BlockKey cell = walk.cell();
-      const bool there = mask[cell.z & 7] >> (8 * (cell.y & 7) + (cell.x & 7)) & 1;
-      if (!there) {
-        marcher.leave();
-      } else if (marcher.march(walk.begin(), walk.end())) {
-        return marcher.crossing();
+      const BlockKey key = walk.cell(), low{8 * key.x, 8 * key.y, 8 * key.z}, high{low.x + 7, low.y + 7, low.z + 7};
+      if (!(mask[key.z & 7] >> (8 * (key.y & 7) + (key.x & 7)) & 1)) continue;
+      const std::atomic<std::uint64_t>* words = crossing.of(grid.find(key), key, sampler);
+      if (!words) continue;
+      for (CellWalk cells(origin, direction, voxel, walk.begin(), walk.end(), low, high); !cells.done();
+           cells.advance()) {
+        const BlockKey cell = cells.cell();
+        const std::uint64_t word = words[cell.z & 7].load(std::memory_order_relaxed);
+        if (!(word >> (8 * (cell.y & 7) + (cell.x & 7)) & 1)) continue;
+        const double t = marcher.crossing(cell, cells.begin(), cells.end());
+        if (!std::isnan(t)) return t;
       }
     }
   }

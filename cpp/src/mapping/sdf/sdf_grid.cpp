@@ -1,5 +1,6 @@
 #include "mapping/sdf/sdf_grid.hpp"
 
+#include "mapping/sdf/crossing_cells.hpp"
 #include "mmgrasp/core/error.hpp"
 
 namespace mmgrasp::detail {
@@ -57,6 +58,17 @@ int SdfGrid::add(const BlockKey& key) {
   if (mask == static_cast<int>(masks.size())) masks.push_back({});
   masks[mask][key.z & 7] |= std::uint64_t{1} << (8 * (key.y & 7) + (key.x & 7));
   return block;
+}
+
+std::shared_ptr<CrossingCells> SdfGrid::crossing_cells() const {
+  const std::lock_guard<std::mutex> guard(crossing_mutex_);
+  if (!crossing_) crossing_ = std::make_shared<CrossingCells>(keys.size());
+  return crossing_;
+}
+
+void SdfGrid::forget_crossing_cells() {
+  const std::lock_guard<std::mutex> guard(crossing_mutex_);
+  crossing_.reset();
 }
 
 void SdfGrid::check_camera(const DepthCamera& camera) const {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "mapping/sdf/key_frame.hpp"
@@ -87,6 +88,8 @@ class KeyTable {
 /// A bit for each of 8 x 8 x 8 blocks, by which rays skip empty space.
 using BlockMask = std::array<std::uint64_t, kBlockSide>;  // [z], bit 8 y + x
 
+class CrossingCells;
+
 struct SdfGrid {
   explicit SdfGrid(const SdfOptions& chosen) : options(chosen) {}
   SdfGrid(const SdfGrid& other);
@@ -100,6 +103,10 @@ struct SdfGrid {
   /// Throws InvalidInput when another camera has this name.
   void check_camera(const DepthCamera& camera) const;
   void update_correlation(int block);
+  /// For rays; kept until the grid changes. Safe for several threads.
+  std::shared_ptr<CrossingCells> crossing_cells() const;
+  /// To be called before the grid changes.
+  void forget_crossing_cells();
   std::size_t bytes() const;
   Eigen::AlignedBox3d bounds() const;
 
@@ -116,6 +123,10 @@ struct SdfGrid {
   std::vector<std::array<float, 3>> correlation;
   KeyTable mask_table;
   std::vector<BlockMask> masks;
+
+ private:
+  mutable std::mutex crossing_mutex_;
+  mutable std::shared_ptr<CrossingCells> crossing_;
 };
 
 }  // namespace mmgrasp::detail

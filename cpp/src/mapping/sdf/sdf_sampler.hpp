@@ -34,30 +34,31 @@ class SdfSampler {
   /// By weights 1 / variance over the layers.
   Node node(int block, int voxel) const {
     Node out;
-    int near = 0, free = 0;
+    bool looked_through = false;
     float sum = 0, mean = 0, variance = 0, systematic = 0;
     for (const auto& layer : grid_.layers) {
       const VoxelBlock* voxels = layer[block].get();
       if (!voxels) continue;
-      near += voxels->near[voxel];
-      free = std::max<int>(free, voxels->free[voxel]);
-      if (!(voxels->weight(voxel) > 0)) continue;
-      const float own = 1 / voxels->weight(voxel), shared = voxels->systematic_variance(), q = 1 / (own + shared);
+      looked_through = looked_through || voxels->looked_through;
+      const float weight = voxels->weight(voxel);
+      if (!(weight > 0)) continue;
+      const float own = 1 / weight, shared = voxels->systematic_variance(), q = 1 / (own + shared);
       sum += q;
       mean += q * voxels->mean(voxel);
       variance += q * q * own;
       systematic += q * q * shared;
     }
-    if (near == 0) return out;
-    if (!(mean < 0 && free > near)) {
+    if (!(sum > 0)) return out;  // never near a surface
+    out.looked_through = looked_through && more_free_than_near(block, voxel);
+    if (!(mean < 0 && out.looked_through)) {
       out.mean = mean / sum;
       out.variance = variance / (sum * sum);
       out.systematic = systematic / (sum * sum);
       out.seen = Seen::surface;
-      out.looked_through = free > near;
     } else {
       out.mean = static_cast<float>(grid_.options.truncation);
       out.seen = Seen::free;
+      out.looked_through = false;
     }
     return out;
   }
@@ -82,6 +83,31 @@ class SdfSampler {
       const int row = ((z & 7) << 3) + (y & 7);
       for (const int each : {row, row + 1, row + 8, row + 9}) __builtin_prefetch(layer[block]->rows[each & 63]);
     }
+  }
+
+  /// Means at the corners of a cell that are all known, its lowest corner the voxel with these indices; corner k lies
+  /// beyond it along x, y, z by the bits of k.
+  void corners(int x, int y, int z, float* mean) {
+    const int block = find({x >> 3, y >> 3, z >> 3});
+    const int u = x & 7, v = y & 7, w = z & 7;
+    if (grid_.layers.size() == 1 && u < 7 && v < 7 && w < 7) {
+      const VoxelBlock& voxels = *grid_.layers[0][block];
+      bool all = true;
+      for (int k = 0; k < 8; ++k) {
+        const int i = ((w + (k >> 2)) << 6) + ((v + (k >> 1 & 1)) << 3) + u + (k & 1);
+        all = all && voxels.weight(i) > 0 && !voxels.carved(i);
+        mean[k] = voxels.mean(i);
+      }
+      if (all) return;
+    }
+    Node corner[8];
+    bool near = false;
+    for (int k = 0; k < 8; ++k) {
+      corner[k] = node_at(x + (k & 1), y + (k >> 1 & 1), z + (k >> 2));
+      near = near || corner[k].seen == Seen::surface;
+    }
+    if (near) bound_free_corners(corner);
+    for (int k = 0; k < 8; ++k) mean[k] = corner[k].mean;
   }
 
   Sample at(const Eigen::Vector3d& point) {
@@ -115,9 +141,22 @@ class SdfSampler {
     return interpolate(corner, t, block >= 0 ? grid_.correlation[block] : std::array<float, 3>{1, 1, 1});
   }
 
+  /// Of values at a cell's corners at a place from (0, 0, 0) to (1, 1, 1) in it.
+  static float trilinear(const float* v, const float* t) {
+    const float a = v[0] + t[0] * (v[1] - v[0]), b = v[2] + t[0] * (v[3] - v[2]), c = v[4] + t[0] * (v[5] - v[4]),
+                d = v[6] + t[0] * (v[7] - v[6]);
+    const float e = a + t[1] * (b - a), f = c + t[1] * (d - c);
+    return e + t[2] * (f - e);
+  }
+
   /// Gradient of the mean by central differences over a voxel each way, a unit vector; zero where that leaves the
   /// known.
   Eigen::Vector3d direction(const Eigen::Vector3d& point) {
+    Eigen::Vector3d near;
+    if (differences_near_surface(point, near)) {
+      const double span = near.norm();
+      return span > 0 ? Eigen::Vector3d(near / span) : Eigen::Vector3d::Zero();
+    }
     Eigen::Vector3d out;
     for (int k = 0; k < 3; ++k) {
       const Eigen::Vector3d step = grid_.options.voxel * Eigen::Vector3d::Unit(k);
@@ -149,6 +188,17 @@ class SdfSampler {
     return last_;
   }
 
+  bool more_free_than_near(int block, int voxel) const {
+    int near = 0, free = 0;
+    for (const auto& layer : grid_.layers) {
+      const VoxelBlock* voxels = layer[block].get();
+      if (!voxels) continue;
+      near += voxels->near[voxel];
+      free = std::max<int>(free, voxels->free[voxel]);
+    }
+    return free > near;
+  }
+
   /// Interpolated variance of errors whose neighbours along an axis correlate: t (1 - t) of it averages away twice.
   static float kept(const float* t, const std::array<float, 3>& correlation) {
     float out = 1;
@@ -156,11 +206,42 @@ class SdfSampler {
     return out;
   }
 
-  static float trilinear(const float* v, const float* t) {
-    const float a = v[0] + t[0] * (v[1] - v[0]), b = v[2] + t[0] * (v[3] - v[2]), c = v[4] + t[0] * (v[5] - v[4]),
-                d = v[6] + t[0] * (v[7] - v[6]);
-    const float e = a + t[1] * (b - a), f = c + t[1] * (d - c);
-    return e + t[2] * (f - e);
+  /// The common case of direction(): one layer, all voxels around near a surface. Each is read once.
+  bool differences_near_surface(const Eigen::Vector3d& point, Eigen::Vector3d& out) {
+    const Eigen::Vector3d g = point * scale_;
+    if (grid_.layers.size() != 1 || !(g.cwiseAbs().maxCoeff() < 8.0 * kMostBlocks - 2)) return false;
+    int cell[3];
+    float t[3];
+    for (int k = 0; k < 3; ++k) {
+      const double floor = std::floor(g[k]);
+      cell[k] = static_cast<int>(floor);
+      t[k] = static_cast<float>(g[k] - floor);
+    }
+    float mean[4][4][4];  // [z][y][x] from one voxel before the cell to one behind it, without edges and corners
+    for (int z = -1; z <= 2; ++z) {
+      for (int y = -1; y <= 2; ++y) {
+        const int outside = (z < 0 || z > 1) + (y < 0 || y > 1);
+        for (int x = outside == 0 ? -1 : 0; outside < 2 && x <= (outside == 0 ? 2 : 1); ++x) {
+          const int place[3] = {cell[0] + x, cell[1] + y, cell[2] + z};
+          const int block = find({place[0] >> 3, place[1] >> 3, place[2] >> 3});
+          const VoxelBlock* voxels = block < 0 ? nullptr : grid_.layers[0][block].get();
+          const int voxel = ((place[2] & 7) << 6) + ((place[1] & 7) << 3) + (place[0] & 7);
+          if (!voxels || !(voxels->weight(voxel) > 0) || voxels->carved(voxel)) return false;
+          mean[z + 1][y + 1][x + 1] = voxels->mean(voxel);
+        }
+      }
+    }
+    for (int k = 0; k < 3; ++k) {
+      float end[2];
+      for (int way = 0; way < 2; ++way) {
+        float corner[8];
+        const int shift[3] = {k == 0 ? 2 * way : 1, k == 1 ? 2 * way : 1, k == 2 ? 2 * way : 1};
+        for (int c = 0; c < 8; ++c) corner[c] = mean[shift[2] + (c >> 2)][shift[1] + (c >> 1 & 1)][shift[0] + (c & 1)];
+        end[way] = trilinear(corner, t);
+      }
+      out[k] = 0.5 * (static_cast<double>(end[1]) - end[0]);
+    }
+    return true;
   }
 
   /// The common case: eight voxels of one block, one layer, all near a surface.

@@ -1,0 +1,130 @@
+"""Rays into a probabilistic map against a fine walk along each of them."""
+
+from __future__ import annotations
+
+import threading
+import time
+from typing import Any
+
+import numpy as np
+import pytest
+
+import mmgrasp as mg
+from mmgrasp import mapping
+
+VOXEL = 0.004
+
+
+def look_at(eye: np.ndarray, target: np.ndarray) -> np.ndarray:
+    z = (target - eye) / np.linalg.norm(target - eye)
+    x = np.cross(z, [0.0, 0.0, 1.0])
+    x /= np.linalg.norm(x)
+    pose = np.eye(4)
+    pose[:3] = np.column_stack([x, np.cross(z, x), z, eye])
+    return pose
+
+
+@pytest.fixture(scope="module")
+def sdf() -> mg.ProbabilisticSdf:
+    """A ball and a box on a table, seen from four sides with noise: rims, holes and surfaces a few voxels thin."""
+    pinhole = mapping.PinholeCamera(160, 120, 140, 140, 79.5, 59.5, 0.1, 3.0)
+    camera = mapping.DepthCamera(pinhole, mapping.DepthNoise(constant=0.001))
+    scene = [
+        mg.LinkShape(mg.Box([0.6, 0.6, 0.02]), mg.pose([0, 0, -0.01])),
+        mg.LinkShape(mg.Sphere(0.06), mg.pose([0.08, 0, 0.06])),
+        mg.LinkShape(mg.Box([0.05, 0.08, 0.1]), mg.pose([-0.08, 0.02, 0.05])),
+    ]
+    found = mg.ProbabilisticSdf(voxel=VOXEL, truncation=4 * VOXEL)
+    for k in range(4):
+        angle = np.pi / 2 * k
+        pose = look_at(np.array([0.5 * np.cos(angle), 0.5 * np.sin(angle), 0.4]), np.zeros(3))
+        found.integrate(mapping.render_depth(scene, pinhole, pose, noise=0.001, seed=k + 1), camera)
+    return found
+
+
+def walked(sdf: mg.ProbabilisticSdf, origin: np.ndarray, direction: np.ndarray, reach: float) -> float:
+    """Distance of the first step from known and in front to known and not in front; NaN without one."""
+    t = np.arange(0.0, reach, VOXEL / 40)
+    mean, _, known = sdf.query(origin + t[:, None] * direction)
+    with np.errstate(invalid="ignore"):
+        crossed = np.flatnonzero(known[:-1] & (mean[:-1] > 0) & known[1:] & (mean[1:] <= 0))
+    return float(t[crossed[0] + 1]) if len(crossed) else np.nan
+
+
+def test_rays_find_what_a_fine_walk_finds(sdf: mg.ProbabilisticSdf) -> None:
+    rng = np.random.default_rng(5)
+    points = sdf.points()[0]
+    origins = rng.normal(size=(400, 3))
+    origins = 0.5 * origins / np.linalg.norm(origins, axis=1)[:, None]
+    targets = points[rng.integers(len(points), size=len(origins))] + rng.normal(0, 0.3 * VOXEL, (len(origins), 3))
+    directions = targets - origins
+    reach = 1.5 * np.linalg.norm(directions, axis=1)
+    directions /= np.linalg.norm(directions, axis=1)[:, None]
+    hits = sdf.cast_rays(origins, directions)
+    expected = np.array([walked(sdf, o, d, r) for o, d, r in zip(origins, directions, reach, strict=True)])
+    found = np.where(hits.hit & (hits.distance < reach), hits.distance, np.nan)
+    same = (np.isnan(found) & np.isnan(expected)) | (np.abs(found - expected) <= VOXEL / 20)
+    # A walk does not see the last crossing before the unknown; a ray that hardly touches may be told apart differently.
+    beyond = sdf.query(origins + (np.nan_to_num(found) + VOXEL / 4)[:, None] * directions)[2]
+    rim = ~np.isnan(found) & np.isnan(expected) & ~beyond
+    assert rim.mean() < 0.03
+    assert (same | rim).mean() >= 0.99, np.flatnonzero(~(same | rim))
+    assert np.isfinite(expected).mean() > 0.3 and np.isnan(expected).mean() > 0.05
+    mean = sdf.query(hits.point[hits.hit])[0]
+    assert np.nanmax(np.abs(mean)) < 0.05 * VOXEL
+
+
+def test_a_map_that_grows_gives_rays_what_it_holds(sdf: mg.ProbabilisticSdf) -> None:
+    pinhole = mapping.PinholeCamera(160, 120, 140, 140, 79.5, 59.5, 0.1, 3.0)
+    camera = mapping.DepthCamera(pinhole, mapping.DepthNoise(constant=0.001))
+    grown = mg.ProbabilisticSdf(voxel=VOXEL, truncation=4 * VOXEL)
+    down, from_above = [[0.0, 0.0, -1.0]], [[0.011, 0.007, 0.5]]
+    for height in (0.0, 0.05):
+        plate = [mg.LinkShape(mg.Box([0.3, 0.3, 0.02]), mg.pose([0, 0, height - 0.01]))]
+        for angle in (0.0, 2.0):
+            pose = look_at(np.array([0.3 * np.cos(angle), 0.3 * np.sin(angle), 0.5]), np.zeros(3))
+            for _ in range(6):  # often enough that the old plate is looked through
+                grown.integrate(mapping.render_depth(plate, pinhole, pose), camera)
+        assert grown.cast_rays(from_above, down).distance[0] == pytest.approx(0.5 - height, abs=VOXEL)
+
+
+def test_answers_do_not_depend_on_threads(sdf: mg.ProbabilisticSdf) -> None:
+    rng = np.random.default_rng(6)
+    origins, directions = rng.uniform(-0.5, 0.5, (3000, 3)), rng.normal(size=(3000, 3))
+    fresh = [mg.ProbabilisticSdf.load(save) for save in _saved(sdf, 2)]
+    one, more = fresh[0].cast_rays(origins, directions, threads=1), fresh[1].cast_rays(origins, directions, threads=4)
+    for name in ("hit", "distance", "point", "normal", "sigma"):
+        np.testing.assert_array_equal(getattr(one, name), getattr(more, name))
+
+
+def _saved(sdf: mg.ProbabilisticSdf, count: int) -> list[Any]:
+    import tempfile
+    from pathlib import Path
+
+    folder = Path(tempfile.mkdtemp())
+    paths = [folder / f"map_{i}.sdf" for i in range(count)]
+    for path in paths:
+        sdf.save(path)
+    return paths
+
+
+def test_long_casts_hear_ctrl_c(sdf: mg.ProbabilisticSdf) -> None:
+    import _thread
+
+    rng = np.random.default_rng(7)
+    origins, directions = rng.uniform(-0.5, 0.5, (6_000_000, 3)), rng.normal(size=(6_000_000, 3))
+    timer = threading.Timer(0.3, _thread.interrupt_main)
+    begun = time.perf_counter()
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        sdf.cast_rays(origins, directions)
+        whole = time.perf_counter() - begun
+        pytest.skip(f"this machine cast all rays in {whole:.2f} s")
+    timer.cancel()
+
+
+def test_rays_that_are_none_are_named(sdf: mg.ProbabilisticSdf) -> None:
+    with pytest.raises(mg.InvalidInput, match="direction 2: must not be zero"):
+        sdf.cast_rays(np.zeros((3, 3)), [[1, 0, 0], [0, 1, 0], [0, 0, 0]])
+    with pytest.raises(mg.InvalidInput, match="must be as many as origins"):
+        sdf.cast_rays(np.zeros((3, 3)), np.ones((2, 3)))

@@ -251,11 +251,7 @@ void bind_sdf(py::module_& m) {
       .def(
           "mesh",
           [](const ProbabilisticSdf& sdf) {
-            SdfMesh found;
-            {
-              py::gil_scoped_release release;
-              found = sdf.mesh();
-            }
+            const SdfMesh found = LongCall(py::none()).run([&](const Monitor& monitor) { return sdf.mesh(monitor); });
             return std::make_tuple(MeshShape{found.mesh},
                                    Floats(static_cast<py::ssize_t>(found.sigma.size()), found.sigma.data()));
           },
@@ -263,11 +259,8 @@ void bind_sdf(py::module_& m) {
       .def(
           "points",
           [](const ProbabilisticSdf& sdf) {
-            SdfPoints found;
-            {
-              py::gil_scoped_release release;
-              found = sdf.points();
-            }
+            const SdfPoints found =
+                LongCall(py::none()).run([&](const Monitor& monitor) { return sdf.points(monitor); });
             return std::make_tuple(sdf_rows(found.point), sdf_rows(found.normal), sdf_column(found.sigma));
           },
           "(points, normals, sigma) of the surface: (n, 3), (n, 3), (n,).")

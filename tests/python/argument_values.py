@@ -329,6 +329,7 @@ OTHERS: dict[str, Any] = {
     "shapes": lambda: [BOX],
     "parts": lambda: [PART],
     "trays": lambda: [TRAY],
+    "plan_stop_picks.trays": lambda: [0],
     "tasks": lambda: [],
     "task_times": lambda: [],
     "remaining": lambda: [(0, 0)],

@@ -83,8 +83,8 @@ def plan_by_hand() -> dict[str, Any]:
             "place_region": {"pose": pose(0, 0, 0.3), "size": [0.2, 0.2], "drop_height": 0.03},
             "obstacles": [{"name": "table", "pose": pose(1.7, 1.2, 0.4), "shapes": box(0.4, 1.0, 0.8)},
                           {"name": "tray A", "pose": pose(1.7, 1.0, 0.85), "shapes": box(0.3, 0.3, 0.1)}],
-            "trays": [{"name": "A", "pose": pose(1.7, 1.0, 0.8), "size": [0.3, 0.3, 0.1], "headings": [0.0]},
-                      {"name": "B & C", "pose": pose(1.7, 1.4, 0.8), "size": [0.3, 0.3, 0.1], "headings": [0.0]}],
+            "trays": [{"name": "A", "pose": pose(1.7, 1.0, 0.8), "size": [0.3, 0.3, 0.1], "headings": [0.0], "shares_headings": True},
+                      {"name": "B & C", "pose": pose(1.7, 1.4, 0.8), "size": [0.3, 0.3, 0.1], "headings": [0.0], "shares_headings": True}],
             "parts": parts, "options": {}, "reach": {},
         },
         "grid": grid,
@@ -100,6 +100,6 @@ def plan_by_hand() -> dict[str, Any]:
                    "turning": 0.875, "duration": 5.0}],
         "picks": picks, "robustness_rate": 1.0, "obstructions": [],
         "timings": [{"stage": "regions", "seconds": 1.5}, {"stage": "picks", "seconds": 0.5}],
-        "premises": {"headings": {"A": [0.0], "B & C": [0.0]}, "positioning_uncertainty": 0.1, "cell": 0.1, "max_distance": 0.0,
+        "premises": {"headings": {"A": [0.0], "B & C": [0.0]}, "shared_headings": True, "positioning_uncertainty": 0.1, "cell": 0.1, "max_distance": 0.0,
                      "grasps": 2, "ik_seeds": 0, "database": {}, "search_finished": True},
     }  # fmt: skip

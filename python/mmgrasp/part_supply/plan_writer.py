@@ -231,6 +231,7 @@ def _intersection(intersection: _core.Intersection, names: list[str]) -> dict[st
 
 
 def pick_to_dict(pick: _core.Pick, scenario: Scenario) -> dict[str, Any]:
+    """A pick as plan.json has it."""
     tray = scenario.trays[pick.tray].tray
     motions = []
     for motion in pick.motions:

@@ -242,6 +242,10 @@ TEST(ProbabilisticSdf, SphereSeenAllAround) {
     sdf.integrate(frame_of({{Sphere{radius}}}, camera, look_at(0.3 * direction_of(k, 20), {0, 0, 0})), camera);
   }
   const SdfMesh mesh = sdf.mesh();
+  Monitor stopped;
+  stopped.stop.stop();
+  EXPECT_TRUE(sdf.mesh(stopped).mesh->triangles.empty());
+  EXPECT_EQ(sdf.points(stopped).point.cols(), 0);
   EXPECT_TRUE(mesh.mesh->closed);
   EXPECT_EQ(mesh.sigma.size(), mesh.mesh->vertices.size());
   EXPECT_NEAR(mesh_volume(*mesh.mesh), 4 * M_PI / 3 * radius * radius * radius, 0.01 * 5.236e-4);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "mmgrasp/core/export.hpp"
+#include "mmgrasp/core/monitor.hpp"
 #include "mmgrasp/geometry/distance_field.hpp"
 #include "mmgrasp/geometry/mesh.hpp"
 #include "mmgrasp/geometry/shape.hpp"
@@ -141,11 +142,12 @@ class MMGRASP_EXPORT ProbabilisticSdf {
   SdfHits cast_rays(const Eigen::Matrix3Xd& origins, const Eigen::Matrix3Xd& directions, int threads = 0) const;
 
   /// The zero level by marching cubes, consistent across blocks: closed where the surface was seen all around.
-  SdfMesh mesh() const;
+  /// Empty when the monitor ended it.
+  SdfMesh mesh(const Monitor& monitor = {}) const;
   /// The same of the cells between voxels that the box [m] touches, as an open surface: fast where it is small.
-  SdfMesh mesh(const Eigen::AlignedBox3d& within) const;
+  SdfMesh mesh(const Eigen::AlignedBox3d& within, const Monitor& monitor = {}) const;
   /// The mesh's vertices with their normals.
-  SdfPoints points() const;
+  SdfPoints points(const Monitor& monitor = {}) const;
 
   /// The map as an obstacle of collision checks: solid cells of the voxels' lattice, one entry per edge length, finest
   /// first; none from a map without a surface. They hold

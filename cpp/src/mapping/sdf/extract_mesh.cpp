@@ -18,7 +18,7 @@ class Extraction {
  public:
   explicit Extraction(const SdfGrid& grid) : grid_(grid), sampler_(grid), mesh_(std::make_shared<TriangleMesh>()) {}
 
-  SdfMesh run(const Eigen::AlignedBox3d* within) {
+  SdfMesh run(const Eigen::AlignedBox3d* within, const Monitor& monitor) {
     std::vector<int> order(grid_.keys.size());
     std::iota(order.begin(), order.end(), 0);
     if (within) {
@@ -33,6 +33,7 @@ class Extraction {
     std::sort(order.begin(), order.end(),
               [&](int a, int b) { return grid_.keys[a].packed() < grid_.keys[b].packed(); });
     for (const int block : order) {
+      if (monitor.stopped()) return {std::make_shared<TriangleMesh>(), {}};
       int first[3] = {0, 0, 0}, last[3] = {kBlockSide - 1, kBlockSide - 1, kBlockSide - 1};
       if (within) {
         const int corner[3] = {8 * grid_.keys[block].x, 8 * grid_.keys[block].y, 8 * grid_.keys[block].z};
@@ -140,8 +141,8 @@ class Extraction {
 
 }  // namespace
 
-SdfMesh extract_mesh(const SdfGrid& grid, const Eigen::AlignedBox3d* within) {
-  return Extraction(grid).run(within);
+SdfMesh extract_mesh(const SdfGrid& grid, const Eigen::AlignedBox3d* within, const Monitor& monitor) {
+  return Extraction(grid).run(within, monitor);
 }
 
 }  // namespace mmgrasp::detail

@@ -125,16 +125,16 @@ SdfHits ProbabilisticSdf::cast_rays(const Eigen::Matrix3Xd& origins, const Eigen
   return out;
 }
 
-SdfMesh ProbabilisticSdf::mesh() const {
-  return detail::extract_mesh(*grid_);
+SdfMesh ProbabilisticSdf::mesh(const Monitor& monitor) const {
+  return detail::extract_mesh(*grid_, nullptr, monitor);
 }
 
-SdfMesh ProbabilisticSdf::mesh(const Eigen::AlignedBox3d& within) const {
-  return detail::extract_mesh(*grid_, &within);
+SdfMesh ProbabilisticSdf::mesh(const Eigen::AlignedBox3d& within, const Monitor& monitor) const {
+  return detail::extract_mesh(*grid_, &within, monitor);
 }
 
-SdfPoints ProbabilisticSdf::points() const {
-  const SdfMesh surface = mesh();
+SdfPoints ProbabilisticSdf::points(const Monitor& monitor) const {
+  const SdfMesh surface = mesh(monitor);
   const auto& vertices = surface.mesh->vertices;
   SdfPoints out;
   const auto count = static_cast<Eigen::Index>(vertices.size());

@@ -145,7 +145,7 @@ std::vector<Voxels> obstacle_cells(const SdfGrid& grid, const SdfObstacleOptions
   options.check();
   CellBlocks cells = cell_states(grid, options.sigmas);
   Leaves leaves(grid.options.voxel);
-  const Eigen::AlignedBox3d bounds = options.bounds.isEmpty() ? grid.bounds() : options.bounds;
+  const Eigen::AlignedBox3d bounds = options.bounds.isEmpty() ? grid.bounds : options.bounds;
   if (options.unknown == UnknownSpace::occupied && !bounds.isEmpty()) {
     fill_unknown(cells, CellRange(bounds, grid.options.voxel), leaves);
   }

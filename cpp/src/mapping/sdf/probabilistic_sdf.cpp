@@ -105,12 +105,11 @@ SdfHits ProbabilisticSdf::cast_rays(const Eigen::Matrix3Xd& origins, const Eigen
   out.point.setConstant(3, count, kNaN);
   out.normal.setConstant(3, count, kNaN);
   out.sigma.setConstant(count, kNaN);
-  const Eigen::AlignedBox3d bounds = grid_->bounds();
   const std::shared_ptr<detail::CrossingCells> crossing = grid_->crossing_cells();
   by_pieces(count, kRaysOfItem, threads, [&](Eigen::Index first, Eigen::Index last) {
     detail::SdfSampler sampler(*grid_);
     for (Eigen::Index i = first; i < last; ++i) {
-      const double t = detail::first_crossing(*grid_, *crossing, bounds, sampler, origins.col(i), directions.col(i));
+      const double t = detail::first_crossing(*grid_, *crossing, sampler, origins.col(i), directions.col(i));
       if (std::isnan(t)) continue;
       const Eigen::Vector3d point = origins.col(i) + t * directions.col(i);
       Eigen::Vector3d normal = sampler.direction(point);
@@ -182,7 +181,7 @@ std::size_t ProbabilisticSdf::memory() const {
 }
 
 Eigen::AlignedBox3d ProbabilisticSdf::bounds() const {
-  return grid_->bounds();
+  return grid_->bounds;
 }
 
 void ProbabilisticSdf::save(const std::string& path) const {

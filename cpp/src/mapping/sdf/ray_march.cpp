@@ -132,10 +132,10 @@ bool clip(const Eigen::AlignedBox3d& box, const Vector3d& origin, const Vector3d
 
 }  // namespace
 
-double first_crossing(const SdfGrid& grid, CrossingCells& crossing, const Eigen::AlignedBox3d& bounds,
-                      SdfSampler& sampler, const Vector3d& origin, const Vector3d& direction) {
+double first_crossing(const SdfGrid& grid, CrossingCells& crossing, SdfSampler& sampler, const Vector3d& origin,
+                      const Vector3d& direction) {
   double begin = 0, end = kInfinity;
-  if (bounds.isEmpty() || !clip(bounds, origin, direction, begin, end)) return kNone;
+  if (grid.bounds.isEmpty() || !clip(grid.bounds, origin, direction, begin, end)) return kNone;
   const double voxel = grid.options.voxel, block = kBlockSide * voxel;
   const Marcher marcher(grid, sampler, origin, direction);
   const BlockKey lowest{-kMostBlocks, -kMostBlocks, -kMostBlocks}, highest{kMostBlocks, kMostBlocks, kMostBlocks};

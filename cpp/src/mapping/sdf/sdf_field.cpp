@@ -14,8 +14,8 @@ SdfField::SdfField(std::shared_ptr<const SdfGrid> grid, double sigmas, UnknownSp
 DistanceFieldProperties SdfField::properties() const {
   DistanceFieldProperties out;
   const Eigen::Vector3d everywhere = Eigen::Vector3d::Constant(kInfinity);
-  out.domain = unknown_ == UnknownSpace::unknown ? grid_->bounds()
-                                                 : Eigen::AlignedBox3d(Eigen::Vector3d(-everywhere), everywhere);
+  out.domain =
+      unknown_ == UnknownSpace::unknown ? grid_->bounds : Eigen::AlignedBox3d(Eigen::Vector3d(-everywhere), everywhere);
   out.error = grid_->options.voxel;
   out.truncation = grid_->options.truncation;
   return out;

@@ -35,6 +35,7 @@ SdfGrid::SdfGrid(const SdfGrid& other)
       key_frame(other.key_frame),
       table(other.table),
       keys(other.keys),
+      bounds(other.bounds),
       correlation(other.correlation),
       mask_table(other.mask_table),
       masks(other.masks) {
@@ -50,6 +51,9 @@ SdfGrid::SdfGrid(const SdfGrid& other)
 int SdfGrid::add(const BlockKey& key) {
   const int block = static_cast<int>(keys.size());
   keys.push_back(key);
+  const Eigen::Vector3d first = kBlockSide * options.voxel * Eigen::Vector3d(key.x, key.y, key.z);
+  bounds.extend(first);
+  bounds.extend(first + Eigen::Vector3d::Constant((kBlockSide - 1) * options.voxel));
   correlation.push_back({0, 0, 0});
   for (auto& layer : layers) layer.emplace_back();
   table.insert(key.packed(), block);
@@ -118,16 +122,6 @@ std::size_t SdfGrid::bytes() const {
   return blocks * sizeof(VoxelBlock) + pointers * sizeof(void*) + keys.capacity() * sizeof(BlockKey) +
          correlation.capacity() * sizeof(correlation[0]) + masks.capacity() * sizeof(BlockMask) + table.bytes() +
          mask_table.bytes();
-}
-
-Eigen::AlignedBox3d SdfGrid::bounds() const {
-  Eigen::AlignedBox3d box;
-  for (const BlockKey& key : keys) {
-    const Eigen::Vector3d first = kBlockSide * options.voxel * Eigen::Vector3d(key.x, key.y, key.z);
-    box.extend(first);
-    box.extend(first + Eigen::Vector3d::Constant((kBlockSide - 1) * options.voxel));
-  }
-  return box;
 }
 
 }  // namespace mmgrasp::detail

@@ -108,7 +108,6 @@ struct SdfGrid {
   /// To be called before the grid changes.
   void forget_crossing_cells();
   std::size_t bytes() const;
-  Eigen::AlignedBox3d bounds() const;
 
   SdfOptions options;
   std::vector<DepthCamera> cameras;
@@ -118,6 +117,7 @@ struct SdfGrid {
 
   KeyTable table;
   std::vector<BlockKey> keys;
+  Eigen::AlignedBox3d bounds;  ///< Of all voxels [m]; for rays, however few at a time.
   std::vector<std::vector<std::unique_ptr<VoxelBlock>>> layers;  ///< [layer][block]; null where it saw nothing.
   /// Correlation of the errors of neighbouring voxels along x, y, z, over all layers.
   std::vector<std::array<float, 3>> correlation;

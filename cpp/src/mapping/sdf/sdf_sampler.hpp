@@ -116,11 +116,7 @@ class SdfSampler {
     if (!(g.cwiseAbs().maxCoeff() < kFarthest)) return {};
     int cell[3];
     float t[3];
-    for (int k = 0; k < 3; ++k) {
-      const double floor = std::floor(g[k]);
-      cell[k] = static_cast<int>(floor);
-      t[k] = static_cast<float>(g[k] - floor);
-    }
+    split(g, cell, t);
     const int block = find({cell[0] >> 3, cell[1] >> 3, cell[2] >> 3});
     const int x = cell[0] & 7, y = cell[1] & 7, z = cell[2] & 7;
     if (block >= 0 && grid_.layers.size() == 1 && x < 7 && y < 7 && z < 7) {
@@ -180,6 +176,15 @@ class SdfSampler {
   }
 
  private:
+  /// The cell of a place in voxels, and where in it that is.
+  static void split(const Eigen::Vector3d& place, int* cell, float* t) {
+    for (int k = 0; k < 3; ++k) {
+      const double floor = std::floor(place[k]);
+      cell[k] = static_cast<int>(floor);
+      t[k] = static_cast<float>(place[k] - floor);
+    }
+  }
+
   int find(const BlockKey& key) {
     if (last_valid_ && key == last_key_) return last_;
     last_valid_ = true;
@@ -212,11 +217,7 @@ class SdfSampler {
     if (grid_.layers.size() != 1 || !(g.cwiseAbs().maxCoeff() < 8.0 * kMostBlocks - 2)) return false;
     int cell[3];
     float t[3];
-    for (int k = 0; k < 3; ++k) {
-      const double floor = std::floor(g[k]);
-      cell[k] = static_cast<int>(floor);
-      t[k] = static_cast<float>(g[k] - floor);
-    }
+    split(g, cell, t);
     float mean[4][4][4];  // [z][y][x] from one voxel before the cell to one behind it, without edges and corners
     for (int z = -1; z <= 2; ++z) {
       for (int y = -1; y <= 2; ++y) {

@@ -62,11 +62,14 @@ class Arrival:
         """Why picks failed; empty when solved."""
         if self.outcome == Outcome.solved:
             return []
-        within = "within" if self.offset <= self.radius else "outside"
+        near = self.offset <= self.radius
+        where = (
+            f"the base stands {self.offset:.3f} m from its stop, {'within' if near else 'outside'} the {self.radius:.3f} m that the "
+            f"plan allows, and {math.degrees(self.turned):.1f} degrees turned: {'turn it as planned' if near else 'drive nearer to it'}"
+        )
         return [
             f"part '{self._part(pick).name}': no pick from here, most candidates fell at stage '{pick.failed_at}' "
-            f"({pick.rejections}); the base stands {self.offset:.3f} m from its stop, {within} the "
-            f"{self.radius:.3f} m that the plan allows, and {math.degrees(self.turned):.1f} degrees turned: drive nearer to it"
+            f"({_fallen(pick.rejections)}); {where}"
             for pick in self.picks
         ]
 
@@ -102,6 +105,12 @@ class Arrival:
                 written.append(Path(folder) / "trajectories" / name)
                 write_file(written[-1], motion.trajectory.to_csv(base_pose=self.pose))
         return written
+
+
+def _fallen(rejections: _core.Rejections) -> str:
+    causes = ("unreachable", "limits", "self_collision", "scene", "grasp_filter")
+    counts = {cause.replace("_", " "): getattr(rejections, cause) for cause in causes}
+    return ", ".join(f"{cause} {count}" for cause, count in counts.items() if count) or "none counted"
 
 
 def arrive(

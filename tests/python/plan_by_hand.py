@@ -50,7 +50,6 @@ def region(tray: str, iy: range, start: int, end: int) -> dict[str, Any]:
     return {
         "tray": tray,
         "cells": {"0": [[y, start, end] for y in iy]},
-        "base_poses_in_collision": 0,
         "explanations": [explanation],
     }
 

@@ -159,7 +159,11 @@ def _read_answer(plan: checks.PlanToCheck, root: Node) -> None:
         checks.CheckedLegFigures(*(leg[key].number() for key in ("length", "turning", "duration")))
         for leg in root["route"].elements()
     ]
-    plan.intersections = [_read_intersection(node, headings) for node in root["intersections"].elements()]
+    plan.intersections = [
+        _read_intersection(node, headings)
+        for key in ("intersections", "lost_intersections")
+        for node in root[key].elements()
+    ]
     plan.robustness_rate = root["robustness_rate"].number()
 
 
@@ -178,6 +182,7 @@ def _cells(node: Node, layers: int, ny: int, nx: int) -> np.ndarray:
     for key, runs in node.items():
         if not (key.isascii() and key.isdigit() and len(key) < 6) or int(key) >= layers:
             runs.fail("must belong to a heading of the grid")
+        before = (-1, 0)
         for run in runs.elements():
             iy, a, b = (
                 (value.integer(least=0) for value in run.elements())
@@ -186,6 +191,9 @@ def _cells(node: Node, layers: int, ny: int, nx: int) -> np.ndarray:
             )
             if iy >= ny or not a < b <= nx:
                 run.fail("must lie inside the grid")
+            if (iy, a) <= before:
+                run.fail("must come after the one before, with a cell between them that is left out")
+            before = (iy, b)
             cells[int(key), iy, a:b] = 1
     return cells.reshape(-1)
 

@@ -215,7 +215,6 @@ def _region(region: _core.BaseRegion, plan: PartSupplyPlan) -> dict[str, Any]:
     return {
         "tray": region.tray,
         "cells": {str(k): runs for k, layer in enumerate(layers) if (runs := runs_of(layer))},
-        "base_poses_in_collision": region.base_poses_in_collision,
         "explanations": [e.to_dict() for e in region.explanations],
     }
 

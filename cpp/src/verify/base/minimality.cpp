@@ -103,6 +103,7 @@ class StopsCheck {
            "radius " + text(stop.radius) + " m is below the positioning uncertainty " + text(needed) + " m"});
     }
     const double wanted = std::max(stop.radius, needed);
+    double least_room = std::numeric_limits<double>::infinity();
     RegionSet holding;
     for (int region = 0; region < floor_.regions(); ++region) {
       if (clearance(region, layer, stop, needed) >= needed - kRadiusSlack - kRounding) holding.insert(region);
@@ -111,12 +112,17 @@ class StopsCheck {
       const auto region = region_of_tray_.find(tray);
       if (region == region_of_tray_.end()) continue;
       const double room = clearance(region->second, layer, stop, wanted);
+      least_room = std::min(least_room, room);
       if (room >= wanted - kFigureBand && room >= needed - kRadiusSlack - kRounding) continue;
       faults_.push_back({"stop-outside-region", where,
                          "a disc of " + text(wanted) + " m is said to lie in the region of tray '" + tray +
                              "', there is room for " + text(room) + " m"});
     }
     own.push_back(holding);
+    if (std::isfinite(least_room) && least_room > wanted + kFigureBand) {
+      faults_.push_back({"stop-radius", where,
+                         "radius " + text(stop.radius) + " m is not that of the largest disc around it in the regions of its trays"});
+    }
   }
 
   /// Every tray was searched at each of its headings and, unless it shares those of others, at no other.
@@ -142,19 +148,22 @@ class StopsCheck {
     }
   }
 
-  /// A disc that is said to lie in the regions of some trays.
+  /// The largest disc around its centre that lies in the regions of its trays.
   void check_intersection(std::size_t index) {
     const CheckedIntersection& said = plan_.intersections[index];
     const int layer = std::isfinite(said.heading) ? floor_.layer(said.heading) : -1;
     bool good = layer >= 0 && said.centre.allFinite() && said.radius >= 0 && std::isfinite(said.radius);
+    double room = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; good && i < said.trays.size(); ++i) {
       const auto region = region_of_tray_.find(said.trays[i]);
-      good = region != region_of_tray_.end() &&
-             clearance(region->second, layer, said.centre, said.radius) >= said.radius - kFigureBand;
+      good = region != region_of_tray_.end();
+      if (good) room = std::min(room, clearance(region->second, layer, said.centre, said.radius));
     }
+    good = good && std::abs(room - said.radius) <= kFigureBand;
     if (good) return;
     faults_.push_back({"bad-figures", "intersection " + std::to_string(index),
-                       "its disc of " + text(said.radius) + " m does not lie in the regions of all its trays"});
+                       "its disc of " + text(said.radius) +
+                           " m does not lie in the regions of all its trays, or is not the largest around its centre"});
   }
 
   double clearance(int region, int layer, const CheckedStop& stop, double radius) const {

@@ -88,6 +88,14 @@ def test_the_shipped_problem_is_pipe1_of_p2() -> None:
     assert problem.preferences.consistency_ratio == pytest.approx(0.0079, abs=5e-5)
 
 
+@pytest.mark.parametrize(("name", "weights"), [("p2", (0.587, 0.089, 0.324)), ("p2_printed", (0.56, 0.12, 0.32))])
+def test_weights_have_names(name: str, weights: tuple[float, ...], tmp_path: Path) -> None:
+    content = shipped() | {"preferences": {"weights": name}}
+    read = load_pipe_problem(written(tmp_path, content)).preferences
+    assert tuple(read.options[f"{key}_weight"] for key in ("motion", "deflection", "manipulability")) == weights
+    assert name in read.source
+
+
 def test_poses_may_be_listed_one_by_one(tmp_path: Path) -> None:
     content = shipped()
     poses = load_pipe_problem("pipe1").T_world_pipe
@@ -160,6 +168,7 @@ BAD: list[tuple[str, Change, list[str]]] = [
     ("inconsistent", put("preferences", "comparison", value=[[1, 5, 0.2], [0.2, 1, 5], [5, 0.2, 1]]), ["preferences.comparison", "10"]),
     ("two rows", put("preferences", "comparison", value=[[1, 2], [0.5, 1]]), ["preferences.comparison", "three rows"]),
     ("both ways", put("preferences", "weights", value={"motion": 1, "deflection": 1, "manipulability": 1}), ["preferences", "not both"]),
+    ("no such weights", put("preferences", value={"weights": "p3"}), ["preferences.weights", "must be one of p2, p2_printed"]),
     ("nothing counts", put("preferences", value={"weights": {"motion": 0, "deflection": 0, "manipulability": 0}}), ["preferences.weights", "above zero"]),
     ("no limit", put("limits", "sag", value=0), ["limits.sag = 0", "> 0"]),
     ("too quick", put("timing", "speed", value=1.5), ["timing.speed = 1.5", "at most 1"]),

@@ -59,7 +59,7 @@ def read_preferences(root: Node) -> Preferences:
 def _read_weights(node: Node) -> dict[str, float]:
     """A name of NAMED_WEIGHTS, or a number for each objective."""
     if isinstance(node.raw, str):
-        values = NAMED_WEIGHTS[node.choice(*NAMED_WEIGHTS)]
+        values: tuple[float, ...] = NAMED_WEIGHTS[node.choice(*NAMED_WEIGHTS)]
     else:
         given = node.mapping(" ".join(OBJECTIVES))
         values = tuple(given[key].number(least=0) for key in OBJECTIVES)

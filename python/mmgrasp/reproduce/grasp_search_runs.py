@@ -11,6 +11,7 @@ from __future__ import annotations
 import functools
 import os
 import time
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
@@ -117,6 +118,12 @@ def optimum(pipe: str, seed: int, boxes: int, evaluations: int, threads: int = 1
     }
 
 
+def on_all_cores(run: Callable[[int], Any], runs: int) -> list[Any]:
+    """Of each run its own seed; the calls below leave Python free meanwhile."""
+    with ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
+        return list(pool.map(run, range(runs)))
+
+
 def runs_of(pipe: str, method: str, setting: int, runs: int, seed: int, target: float) -> dict[str, Any]:
     """Runs that differ in their seed; each ends at the target or when the budget is spent."""
 
@@ -126,8 +133,7 @@ def runs_of(pipe: str, method: str, setting: int, runs: int, seed: int, target: 
         result = search(pipe, max_evaluations=BUDGET, target=target, seed=seeds, **options_of(method, setting))
         return result, time.perf_counter() - begun
 
-    with ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
-        done = list(pool.map(one, range(runs)))
+    done = on_all_cores(one, runs)
     return {
         "pipe": pipe,
         "method": method,

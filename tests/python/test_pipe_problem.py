@@ -133,6 +133,15 @@ def in_pieces(content: dict[str, Any]) -> None:
     content["structure"]["sections"].append({"nodes": [7, 8]})
 
 
+def in_millimetres(content: dict[str, Any]) -> None:
+    content["structure"]["nodes"] = [[1000 * x for x in node] for node in content["structure"]["nodes"]]
+
+
+def short(content: dict[str, Any]) -> None:
+    content["structure"]["nodes"] = [[x / 25 for x in node] for node in content["structure"]["nodes"]]
+    del content["compare"]
+
+
 BAD: list[tuple[str, Change, list[str]]] = [
     ("no format", drop("format"), ["is no pipe problem", "format: mmgrasp-pipe"]),
     ("another format", put("format", value="mmgrasp-scenario"), ["format", "must be one of mmgrasp-pipe"]),
@@ -141,6 +150,9 @@ BAD: list[tuple[str, Change, list[str]]] = [
     # the frame
     ("in pieces", in_pieces, ["structure", "connected"]),
     ("no length", put("structure", "nodes", 1, value=[-0.2, -0.248, -0.097]), ["structure", "0"]),
+    ("in millimetres", in_millimetres, ["structure.nodes", "span ", "coordinates are in metres"]),
+    ("too thick for the hand", put("structure", "outer_diameter", value=0.3), ["structure", "no section fits the hand", "0.3 m thick"]),
+    ("too short for the hand", short, ["structure", "longer than its fingers are wide"]),
     ("no thickness", put("structure", "outer_diameter", value=0), ["structure.outer_diameter = 0", "must be > 0"]),
     ("inner not less", put("structure", "inner_diameter", value=0.012), ["inner_diameter = 0.012", "less than the outer diameter, 0.012 m"]),
     ("own inner not less", put("structure", "sections", 2, value={"nodes": [2, 3], "inner_diameter": 0.02}), ["sections[2].inner_diameter = 0.02", "less than"]),

@@ -168,15 +168,14 @@ def try_out(
     document: dict[str, Any], refused: Callable[[dict[str, Any]], bool], of_each: int, every: int = 1
 ) -> Result:
     """Asks `refused` of each change; with `every` above 1 of one in so many."""
-    result = Result(0, [])
-    tried = 0
+    tried, left = 0, []
     for number, change in enumerate(all_changes(document, of_each)):
         if number % every:
             continue
         tried += 1
         if not refused(changed(document, change.place, change.new)):
-            result.left.append(change)
-    return Result(tried, result.left)
+            left.append(change)
+    return Result(tried, left)
 
 
 def explained(change: Change, harmless: Harmless) -> bool:

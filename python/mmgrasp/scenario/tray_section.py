@@ -245,17 +245,20 @@ def _list(node: Node, types: dict[str, PartType]) -> list[Placed]:
 def _targets(node: Node, names: list[str], own: list[str]) -> list[str]:
     if "targets" not in node or node["targets"].raw == "all":
         return list(names)
-    chosen = []
+    chosen: list[str] = []
     for entry in node["targets"].elements():
         if isinstance(entry.raw, str):
             if entry.raw not in own and entry.raw not in names:
                 entry.fail(f"no such part in this tray{near_miss(entry.raw, own)}")
-            chosen.append(names[own.index(entry.raw)] if entry.raw in own else entry.raw)
+            name = names[own.index(entry.raw)] if entry.raw in own else entry.raw
         else:
             index = entry.integer(least=0)
             if index >= len(names):
                 entry.fail(f"must be below the number of parts, {len(names)}")
-            chosen.append(names[index])
+            name = names[index]
+        if name in chosen:
+            entry.fail(f"part {name} is listed twice")
+        chosen.append(name)
     return chosen
 
 

@@ -292,9 +292,14 @@ TEST(PlanCheckRoute, LegThatEndsElsewhere) {
 
 TEST(PlanCheckFigures, WhatDescribesMustNotLie) {
   PlanToCheck good = good_plan();
-  // 1.4 m; 3 m with two quarter turns; 1.4 m. Durations far above what any base needs.
-  good.route_figures = {{1.4, 0, 60}, {3, M_PI, 60}, {1.4, 0, 60}};
-  good.intersections = {{{"A"}, 0, Eigen::Vector2d(0.4, 0), 0.2}, {{"B"}, 0, Eigen::Vector2d(0.4, 3), 0.1}};
+  // 1.4 m; 3 m with two quarter turns; 1.4 m, each piece from rest to rest at full speed.
+  const BaseLimits& limits = good.robot.base_limits;
+  const auto drive = [&](double way) {
+    return way / limits.linear_velocity + limits.linear_velocity / limits.linear_acceleration;
+  };
+  const double quarter = M_PI / 2 / limits.angular_velocity + limits.angular_velocity / limits.angular_acceleration;
+  good.route_figures = {{1.4, 0, drive(1.4)}, {3, M_PI, drive(3) + 2 * quarter}, {1.4, 0, drive(1.4)}};
+  good.intersections = {{{"A"}, 0, Eigen::Vector2d(0.4, 0), 0.2}, {{"B"}, 0, Eigen::Vector2d(0.35, 3), 0.15}};
   good.robustness_rate = 1;
   for (CheckedPick& pick : good.picks) {
     for (CheckedMotion& m : pick.motions) {
@@ -304,15 +309,17 @@ TEST(PlanCheckFigures, WhatDescribesMustNotLie) {
     }
   }
   EXPECT_EQ(codes_of(good), Codes{});
-  std::vector<PlanToCheck> lies(6, good);
+  std::vector<PlanToCheck> lies(7, good);
   lies[0].route_figures[1].length = 2.99;
   lies[1].route_figures[1].turning = 0;
   lies[2].route_figures[0].duration = 1.39 / good.robot.base_limits.linear_velocity;  // no time to speed up and brake
   lies[3].route_figures.pop_back();
   lies[4].route_figures[2].duration = -1;
   lies[5].route_figures[2].length = std::nan("");
+  lies[6].route_figures[0].duration *= 1.1;
   for (const PlanToCheck& lie : lies) EXPECT_EQ(codes_of(lie), Codes{"route-figures"}) << &lie - lies.data();
-  lies.assign(6, good);
+  lies.assign(7, good);
+  lies[6].intersections[0].radius = 0.19;  // not the largest
   lies[0].intersections[0].radius = 0.21;
   lies[1].intersections[1].trays.push_back("A");
   lies[2].intersections[1].centre.x() = 0.55;
@@ -320,6 +327,9 @@ TEST(PlanCheckFigures, WhatDescribesMustNotLie) {
   lies[4].robustness_rate = 1.1;
   lies[5].robustness_rate = -0.1;
   for (const PlanToCheck& lie : lies) EXPECT_EQ(codes_of(lie), Codes{"bad-figures"}) << &lie - lies.data();
+  good.stops[1].radius = 0.19;
+  EXPECT_EQ(codes_of(good), Codes{"stop-radius"});
+  good.stops[1].radius = 0.2;
   lies.assign(4, good);
   for (Eigen::VectorXd& a : lies[3].picks[1].motions[2].accelerations) a.setZero();  // it moves
   lies[0].picks[1].motions[2].accelerations[3][4] = 2.1;                             // the limit is 2

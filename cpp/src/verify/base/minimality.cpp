@@ -120,8 +120,9 @@ class StopsCheck {
     }
     own.push_back(holding);
     if (std::isfinite(least_room) && least_room > wanted + kFigureBand) {
-      faults_.push_back({"stop-radius", where,
-                         "radius " + text(stop.radius) + " m is not that of the largest disc around it in the regions of its trays"});
+      faults_.push_back(
+          {"stop-radius", where,
+           "radius " + text(stop.radius) + " m is not that of the largest disc around it in the regions of its trays"});
     }
   }
 

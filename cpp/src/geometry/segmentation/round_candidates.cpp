@@ -124,7 +124,7 @@ FittedPrimitive placed(const SegmentSurface& s, const RoundFit& fit, const Cover
 
 }  // namespace
 
-std::vector<FittedPrimitive> round_candidates(const SegmentSurface& s) {
+std::vector<FittedPrimitive> round_candidates(const SegmentSurface& s, const Monitor& monitor) {
   std::vector<FittedPrimitive> out;
   for (const RoundModel model : {RoundModel::cylinder, RoundModel::cone, RoundModel::sphere}) {
     std::vector<Vector3d> points, normals;
@@ -133,7 +133,7 @@ std::vector<FittedPrimitive> round_candidates(const SegmentSurface& s) {
       points.push_back(s.points[i]);
       normals.push_back(s.normals[i]);
     }
-    for (int round = 0; round < kMostModels && points.size() >= 8; ++round) {
+    for (int round = 0; round < kMostModels && points.size() >= 8 && !monitor.stopped(); ++round) {
       std::vector<int> on = points_on_model(points, normals, model, kOnSurface);
       if (on.size() < 8) break;
       std::vector<Vector3d> p, n;

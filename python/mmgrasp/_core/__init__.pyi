@@ -2528,7 +2528,7 @@ class ManipulationResult:
     @property
     def trees(self) -> list[SearchTree]:
         """
-        With keep_trees: a SearchTree for each grasp still still a candidate and each end.
+        With keep_trees: a SearchTree for each grasp still a candidate and each end.
         """
     @property
     def warnings(self) -> list[str]:

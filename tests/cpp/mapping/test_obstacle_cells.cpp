@@ -125,7 +125,9 @@ TEST(ObstacleCells, TwoSigmaHoldWhatNoisyFramesSaw) {
     std::printf("%s: of %d seen points %d outside at 0 sigma, %d at 2\n", poses ? "with pose errors" : "noise alone",
                 count, at_zero, at_two);
     EXPECT_GT(count, 100000);
-    if (poses) EXPECT_GT(at_zero, 300);
+    if (poses) {
+      EXPECT_GT(at_zero, 300);
+    }
     EXPECT_LE(at_two, poses ? count / 10000 : 0);
   }
 }

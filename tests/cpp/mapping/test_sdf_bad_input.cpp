@@ -144,7 +144,9 @@ TEST_F(BadFrame, PosesTheWrongWayRound) {
   for (const Pose& pose : poses) {
     const IntegrationReport report = right.integrate(frame_of(room(), camera_, pose), camera_);
     EXPECT_EQ(report.warning, "");
-    if (right.frames() > 1) EXPECT_GT(report.agreement, 0.7);
+    if (right.frames() > 1) {
+      EXPECT_GT(report.agreement, 0.7);
+    }
   }
   // A pose that fits neither way is integrated with a warning.
   DepthImage off = frame_of(room(), camera_, poses[0]);
@@ -246,7 +248,9 @@ TEST_F(BadFrame, FilesThatAreNoMap) {
   const SdfValues a = sdf.query(points), b = again.query(points);
   EXPECT_EQ(a.known, b.known);
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    if (a.known[i]) EXPECT_EQ(a.mean[i], b.mean[i]);
+    if (a.known[i]) {
+      EXPECT_EQ(a.mean[i], b.mean[i]);
+    }
   }
 
   const auto refused = [&](const std::string& content) {

@@ -172,6 +172,9 @@ void bind_plan_to_check(py::module_& m) {
       .def_readwrite("bin_size", &PlanToCheck::bin_size, "Inner x and y (2,) [m].")
       .def_readwrite("drop_height", &PlanToCheck::drop_height,
                      "Height above the bin's top plane at which parts are released [m].")
+      .def_readwrite("floor", &PlanToCheck::floor,
+                     "Everything below this height is ground [m], which links that the arm joints move, and what they "
+                     "hold, must not\ntouch; -inf: there is none.")
       .def_readwrite("obstacles", &PlanToCheck::obstacles, "Bodies of the scene.")
       .def_readwrite("parts", &PlanToCheck::parts, "All parts, targets and others.")
       .def_readwrite("padded", &PlanToCheck::padded,

@@ -5,6 +5,7 @@
 
 #include "bindings.hpp"
 #include "mmgrasp/collision/detail/named_bodies.hpp"
+#include "mmgrasp/collision/floor.hpp"
 #include "mmgrasp/collision/world.hpp"
 #include "mmgrasp/geometry/octree.hpp"
 #include "padding.hpp"
@@ -150,6 +151,11 @@ void bind_world(py::module_& m) {
           py::arg("unknown_is_free") = FieldObstacle().unknown_is_free,
           "What a distance field holds, at T_world_field (4, 4). A body is free only where the field proves it, and is "
           "called\nso when it is farther away than twice the field's error and `resolution` [m].")
+      .def("add_floor", &add_floor, py::arg("group"), py::arg("height") = 0.0,
+           "Level ground, the object \"floor\": everything below z = `height` [m] is solid, without an end. What the "
+           "joints of\n`group` move (but a base's x, y and theta) must keep off it, and so must what is attached; all "
+           "other links may touch\nit: wheels stand on it, and no configuration brings these links nearer. Raises "
+           "InvalidInput when the name is in use\nor `height` is not finite.")
       .def(
           "move",
           [](World& w, const std::string& name, const ArrayLike& pose) { w.move(name, pose_argument(pose, "pose")); },

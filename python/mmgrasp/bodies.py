@@ -16,7 +16,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._core import Box, Capsule, Cylinder, LinkShape, Robot, Sphere, World, pose
+from ._core import Box, Capsule, Cylinder, LinkShape, Plane, Robot, Sphere, World, pose
 
 Points = NDArray[np.float64]
 
@@ -71,20 +71,31 @@ def moved(T: Points, points: Points) -> Points:
 
 
 class SceneBodies:
-    """Links of a robot, obstacles and parts."""
+    """Links of a robot, obstacles and parts; `floor` is the height of the ground [m].
 
-    def __init__(self, robot: Robot, obstacles: Iterable[Body], parts: Iterable[Body]):
+    Where nothing is said of the ground, it lies at 0, or lower where parts do.
+    """
+
+    def __init__(self, robot: Robot, obstacles: Iterable[Body], parts: Iterable[Body], floor: float | None):
         self.robot = robot
         self.links = [Body(link, tuple(robot.collisions(link)), np.eye(4)) for link in robot.links]
         self.obstacles = list(obstacles)
         self.parts = {body.name: body for body in parts}
+        lowest = [
+            LinkShape(s.shape, part.pose @ s.pose).bounds[0][2] for part in self.parts.values() for s in part.shapes
+        ]
+        self.floor: float = min([0.0, *lowest]) if floor is None else floor
 
     @classmethod
     def of_world(cls, robot: Robot, world: World, parts: Iterable[Placed] = ()) -> SceneBodies:
         """A robot, the objects of a world and loose parts."""
         obstacles = [Body(name, tuple(world.shapes_of(name)), world.pose_of(name)) for name in world.objects]
+        heights = {body.name: height for body in obstacles if (height := _ground_height(body)) is not None}
         return cls(
-            robot, obstacles, (Body(part.name, tuple(part.shapes), np.asarray(part.pose, float)) for part in parts)
+            robot,
+            [body for body in obstacles if body.name not in heights],
+            (Body(part.name, tuple(part.shapes), np.asarray(part.pose, float)) for part in parts),
+            next(iter(heights.values()), None),
         )
 
     @classmethod
@@ -93,7 +104,8 @@ class SceneBodies:
         scenario = plan["scenario"]
         stored = scenario["robot"]
         robot = Robot.from_strings(stored["urdf"], stored["srdf"], base=stored["base"])
-        return cls(robot, map(_stored_body, scenario["obstacles"]), map(_stored_body, scenario["parts"]))
+        obstacles, parts = (map(_stored_body, scenario[key]) for key in ("obstacles", "parts"))
+        return cls(robot, obstacles, parts, scenario["floor"])
 
     def link_poses(self, joints: Mapping[str, float], base: ArrayLike) -> dict[str, Points]:
         """T_world_link by link name; `base` is (x, y, theta)."""
@@ -125,15 +137,23 @@ def stored_shape(stored: Mapping[str, Any]) -> LinkShape:
     return LinkShape(make(stored["radius"], stored["length"]), T)
 
 
+def _ground_height(body: Body) -> float | None:
+    """Of what World.add_floor put into a world."""
+    ground = body.shapes[0].shape
+    return ground.offset if body.name == "floor" and isinstance(ground, Plane) else None
+
+
 def _stored_body(stored: Mapping[str, Any]) -> Body:
     return Body(stored["name"], tuple(map(stored_shape, stored["shapes"])), stored_pose(stored["pose"]))
 
 
-def floor_tiles(low: ArrayLike, high: ArrayLike, tile: float = 0.5) -> tuple[Points, NDArray[np.int64]]:
-    """Vertices and faces of a floor of square tiles over [low, high] (x, y), a hair below 0."""
+def floor_tiles(
+    low: ArrayLike, high: ArrayLike, height: float = 0.0, tile: float = 0.5
+) -> tuple[Points, NDArray[np.int64]]:
+    """Vertices and faces of a floor of square tiles over [low, high] (x, y), a hair below `height` [m]."""
     (x0, y0), (x1, y1) = np.asarray(low, float), np.asarray(high, float)
     xs, ys = np.arange(x0, x1 + tile, tile), np.arange(y0, y1 + tile, tile)
-    vertices = np.array([[x, y, -0.002] for y in ys for x in xs])
+    vertices = np.array([[x, y, height - 0.002] for y in ys for x in xs])
     n = len(xs)
     corners = [j * n + i for j in range(len(ys) - 1) for i in range(n - 1)]
     return vertices, np.array([f for a in corners for f in ([a, a + 1, a + n + 1], [a, a + n + 1, a + n])])

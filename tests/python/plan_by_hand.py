@@ -81,6 +81,7 @@ def plan_by_hand() -> dict[str, Any]:
             "other_joints": {}, "home": home, "start": [0.3, 0.3, 0.0], "goal": [2.5, 0.3, 0.0],
             "positioning_uncertainty": 0.1,
             "place_region": {"pose": pose(0, 0, 0.3), "size": [0.2, 0.2], "drop_height": 0.03},
+            "floor": 0.0,
             "obstacles": [{"name": "table", "pose": pose(1.7, 1.2, 0.4), "shapes": box(0.4, 1.0, 0.8)},
                           {"name": "tray A", "pose": pose(1.7, 1.0, 0.85), "shapes": box(0.3, 0.3, 0.1)}],
             "trays": [{"name": "A", "pose": pose(1.7, 1.0, 0.8), "size": [0.3, 0.3, 0.1], "headings": [0.0], "shares_headings": True},

@@ -74,6 +74,17 @@ bool needs_test(const RobotModel& robot, int a, int b) {
 
 }  // namespace
 
+std::vector<bool> links_of_the_arm(const RobotModel& robot, const ArmSetup& setup) {
+  std::set<int> driven(setup.arm.begin(), setup.arm.end());
+  for (const auto& finger : setup.fingers) driven.insert(finger.joint);
+  std::vector<bool> moved(robot.links.size(), false);
+  for (std::size_t j = 0; j < robot.joints.size(); ++j) {  // joint j carries link j + 1, parents first
+    const ModelJoint& joint = robot.joints[j];
+    moved[joint.child] = moved[joint.parent] || driven.count(joint.source) > 0;
+  }
+  return moved;
+}
+
 PlacedBody place_body(const std::string& name, const std::vector<LinkShape>& shapes, const Pose& T_world_body) {
   PlacedBody body;
   body.name = name;

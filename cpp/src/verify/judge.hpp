@@ -41,6 +41,12 @@ struct Stage {
   }
 };
 
+/// The name of the ground among the bodies.
+inline constexpr char kFloor[] = "floor";
+
+/// Which links the arm's and the hand's joints move.
+std::vector<bool> links_of_the_arm(const RobotModel& robot, const ArmSetup& setup);
+
 /// Solids of the links, pairs but the allowed ones, and reach. Bodies are added by the caller.
 Stage make_stage(std::shared_ptr<const RobotModel> robot, const ArmSetup& setup, const std::vector<int>& finger_links,
                  const std::vector<CheckedPair>& allowed);

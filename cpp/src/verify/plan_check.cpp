@@ -1,5 +1,8 @@
 #include "mmgrasp/verify/plan_check.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "mmgrasp/core/error.hpp"
 #include "verify/compare_robots.hpp"
 #include "verify/context.hpp"
@@ -21,12 +24,24 @@ std::shared_ptr<const RobotModel> model_of(const PlanToCheck& plan, Faults& faul
   }
 }
 
+/// The ground, with every link that the arm cannot bring nearer to it allowed to touch it.
+void add_floor(double height, Stage& stage) {
+  stage.bodies.push_back(place_body(kFloor, {{Plane{Eigen::Vector3d::UnitZ(), height}}}, Pose::Identity()));
+  const std::vector<bool> moved = links_of_the_arm(*stage.robot, stage.setup);
+  for (std::size_t link = 0; link < moved.size(); ++link) {
+    if (moved[link]) continue;
+    const std::string& name = stage.robot->links[link].name;
+    stage.allowed.insert({{name, kFloor}, {kFloor, name}});
+  }
+}
+
 std::shared_ptr<const Stage> build_stage(const PlanToCheck& plan, std::shared_ptr<const RobotModel> robot,
                                          const ArmSetup& setup, const std::vector<int>& finger_links) {
   auto stage = std::make_shared<Stage>(make_stage(std::move(robot), setup, finger_links, plan.allowed_collisions));
   const auto add = [&](const CheckedBody& body) {
     stage->bodies.push_back(place_body(body.name, body.shapes, body.T_world_body));
   };
+  if (std::isfinite(plan.floor)) add_floor(plan.floor, *stage);
   for (const CheckedBody& obstacle : plan.obstacles) add(obstacle);
   stage->first_part = stage->bodies.size();
   for (const CheckedPart& part : plan.parts) add(part.body);
@@ -70,8 +85,15 @@ std::vector<std::pair<std::size_t, std::size_t>> overlapping(const std::vector<P
   return pairs;
 }
 
-/// Parts stand where nothing else is.
-void check_scene_at_rest(const Stage& stage, Faults& faults) {
+/// Parts stand where nothing else is, and trays not in the ground.
+void check_scene_at_rest(const PlanToCheck& plan, const Stage& stage, Faults& faults) {
+  const auto is_tray = [&](const std::string& body) {
+    return std::any_of(plan.trays.begin(), plan.trays.end(), [&](const auto& tray) { return body == "tray " + tray; });
+  };
+  for (std::size_t i = 1; std::isfinite(plan.floor) && i < stage.first_part; ++i) {
+    if (is_tray(stage.bodies[i].name) && bodies_overlap(stage.bodies[0], stage.bodies[i]))
+      faults.push_back({"tray-overlap", stage.bodies[i].name, "reaches under the floor by more than 1e-4 m"});
+  }
   for (const auto& [other, part] : overlapping(stage.bodies, stage.first_part)) {
     faults.push_back({"part-overlap", "part '" + stage.bodies[part].name + "'",
                       "overlaps '" + stage.bodies[other].name + "' by more than 1e-4 m"});
@@ -108,7 +130,7 @@ PlanCheckResult check_plan(const PlanToCheck& plan, const PlanCheckOptions& opti
 
   Context context{plan, options, monitor, build_stage(plan, robot, setup, finger_links), {}, {}, {}};
   for (std::size_t i = 0; i < plan.parts.size(); ++i) context.part_index[plan.parts[i].body.name] = static_cast<int>(i);
-  check_scene_at_rest(*context.stage, result.faults);
+  check_scene_at_rest(plan, *context.stage, result.faults);
   check_pick_list(context, result.faults);
   check_grasp_openings(context, result.faults);
   check_stops(context, result);

@@ -169,6 +169,8 @@ void Structure::body(const CheckedBody& body, const std::string& where, std::set
 
 void Structure::scene() {
   std::set<std::string> names;
+  need(!(plan.floor > kLargest) && !std::isnan(plan.floor), "floor", text(plan.floor) + ": must be a finite height");
+  if (std::isfinite(plan.floor)) names.insert(kFloor);
   for (const CheckedBody& obstacle : plan.obstacles) body(obstacle, "obstacle", names);
   const std::set<std::string> trays(plan.trays.begin(), plan.trays.end());
   need(trays.size() == plan.trays.size(), "trays", "a name is used twice");

@@ -408,6 +408,13 @@ class World:
         What a distance field holds, at T_world_field (4, 4). A body is free only where the field proves it, and is called
         so when it is farther away than twice the field's error and `resolution` [m].
         """
+    def add_floor(self, group: JointGroup, height: float = 0.0) -> None:
+        """
+        Level ground, the object "floor": everything below z = `height` [m] is solid, without an end. What the joints of
+        `group` move (but a base's x, y and theta) must keep off it, and so must what is attached; all other links may touch
+        it: wheels stand on it, and no configuration brings these links nearer. Raises InvalidInput when the name is in use
+        or `height` is not finite.
+        """
     def add_mesh(self, name: str, path: str | os.PathLike[str], pose: numpy.typing.ArrayLike | None = None, scale: numpy.typing.ArrayLike = 1.0) -> None:
         """
         STL, OBJ, DAE or PLY; closed meshes are solids, open ones surfaces.

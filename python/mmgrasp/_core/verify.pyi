@@ -257,6 +257,15 @@ class PlanToCheck:
     def fingers(self, arg0: collections.abc.Sequence[CheckedFinger]) -> None:
         ...
     @property
+    def floor(self) -> float:
+        """
+        Everything below this height is ground [m], which links that the arm joints move, and what they hold, must not
+        touch; -inf: there is none.
+        """
+    @floor.setter
+    def floor(self, arg0: float) -> None:
+        ...
+    @property
     def goal(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         Base pose at the end (3,): x, y, theta [m, m, rad].

@@ -97,6 +97,7 @@ def _read_scene(plan: checks.PlanToCheck, scenario: Node) -> None:
     plan.bin_size = np.array(place["size"].numbers(2, above=0))
     plan.drop_height = place["drop_height"].number(least=0)
     plan.obstacles = [_read_body(node) for node in scenario["obstacles"].elements()]
+    plan.floor = -math.inf if scenario["floor"].raw is None else scenario["floor"].number()
     plan.trays = [tray["name"].string() for tray in scenario["trays"].elements()]
     farthest = scenario["options"]["grid_max_distance"].number(least=0) or math.inf
     plan.searched = {

@@ -103,6 +103,7 @@ def scenario_to_dict(scenario: Scenario) -> dict[str, Any]:
             "size": place.size.tolist(),
             "drop_height": place.drop_height,
         },
+        "floor": scenario.floor,
         "obstacles": [
             {"name": o.name, "pose": pose_to_dict(o.pose), "shapes": [shape_to_dict(s) for s in o.shapes]}
             for o in scenario.obstacles

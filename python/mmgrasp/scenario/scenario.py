@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from .. import _core
-from .._core import CollisionChecker, InvalidInput, IoError, LinkShape, PartSupplyProblem, ReachDatabase, World
+from .._core import CollisionChecker, InvalidInput, IoError, LinkShape, PartSupplyProblem, Plane, ReachDatabase, World
 from .._core import verify as checks
 from .._files import check_folder, shipped
 from .._progress import Progress
@@ -23,7 +23,8 @@ from .shapes import read_shapes
 from .tray_section import PartType, TraySetup, read_part_types, read_tray
 
 TOP_KEYS = "format version name robot start goal positioning_uncertainty trays"
-TOP_OPTIONAL = "part_types gripper place_region obstacles allowed_collisions padding options reach"
+TOP_OPTIONAL = "part_types gripper place_region floor obstacles allowed_collisions padding options reach"
+FLOOR = "floor"
 SHAPE_KEYS = "box cylinder sphere mesh shapes scale"
 
 
@@ -50,6 +51,8 @@ class Scenario:
     positioning_uncertainty: float
     options: dict[str, Any] = field(default_factory=dict)
     reach: dict[str, Any] = field(default_factory=dict)
+    floor: float | None = 0.0
+    """Height of level ground [m]; None: there is none."""
     rules: ContactRules = field(default_factory=ContactRules)
 
     @property
@@ -73,6 +76,8 @@ class Scenario:
         world = World()
         for obstacle in self.obstacles:
             world.add(obstacle.name, obstacle.shapes, obstacle.pose)
+        if self.floor is not None:
+            world.add_floor(self.setup.arm, self.floor)
         return world
 
     def problem(self) -> PartSupplyProblem:
@@ -143,11 +148,11 @@ def load_scenario(
     typed = [(p.shapes, p.T_world_part) for t in trays if t.scan is None for p in t.tray.parts]
     for name, shapes in scans.rest([*((o.shapes, o.pose) for o in obstacles), *typed]):
         obstacles.append(Obstacle(name, np.eye(4), shapes))
+    floor = _read_floor(root, obstacles)
     _check_names(root, obstacles, trays)
-    rules = read_contact_rules(
-        root, setup.robot, [o.name for o in obstacles], [p.name for t in trays for p in t.tray.parts]
-    )
-    _check_apart(root["trays"], trays, obstacles)
+    names = [o.name for o in obstacles] + ([FLOOR] if floor is not None else [])
+    rules = read_contact_rules(root, setup.robot, names, [p.name for t in trays for p in t.tray.parts])
+    _check_apart(root["trays"], trays, obstacles, floor)
     if seed is not None:
         options["seed"] = seed
     if threads is not None:
@@ -163,6 +168,7 @@ def load_scenario(
         uncertainty,
         options,
         reach,
+        floor,
         rules,
     )
     for key in ("start", "goal"):
@@ -204,6 +210,18 @@ def _read_obstacles(root: Node) -> list[Obstacle]:
     return out
 
 
+def _read_floor(root: Node, obstacles: list[Obstacle]) -> float | None:
+    """Height of the ground; None where the scenario says `none`."""
+    if "floor" in root and root["floor"].raw == "none":
+        return None
+    height = root["floor"].number() if "floor" in root else 0.0
+    if FLOOR in [o.name for o in obstacles]:
+        raise InvalidInput(
+            f"{root.document.source}: the name {FLOOR!r} is that of the ground; give the obstacle another one, or say floor: none"
+        )
+    return height
+
+
 def _in_world(obstacles: list[Obstacle]) -> list[LinkShape]:
     return [moved(s, o.pose) for o in obstacles for s in o.shapes]
 
@@ -225,22 +243,33 @@ def _check_names(root: Node, obstacles: list[Obstacle], trays: list[TraySetup]) 
         seen.add(name)
 
 
-def _check_apart(node: Node, trays: list[TraySetup], obstacles: list[Obstacle]) -> None:
-    """No two trays in one place, no two parts, and no part in an obstacle or a wall of a tray."""
+def _check_apart(node: Node, trays: list[TraySetup], obstacles: list[Obstacle], floor: float | None) -> None:
+    """No two trays in one place, no two parts, no part in an obstacle or a wall of a tray, neither in the ground."""
+    ground = [] if floor is None else [Obstacle(FLOOR, np.eye(4), [LinkShape(Plane([0, 0, 1], floor))])]
     walls = [checks.CheckedBody(f"tray {t.tray.name}", t.walls, t.tray.T_world_tray) for t in trays]
     for i, j in checks.overlapping_bodies(walls):
         node.elements()[j].fail(f"overlaps tray {trays[i].tray.name}")
+    for _, j in checks.overlapping_bodies(_checked(ground) + walls) if ground else []:
+        node.elements()[j - 1].fail(
+            f"tray {trays[j - 1].tray.name} reaches under the floor, z = {floor:g} m (the key floor)"
+        )
     owners = [k for k, t in enumerate(trays) for _ in t.tray.parts]
     parts = [part for t in trays for part in t.tray.parts]
     for i, j in checks.overlapping_bodies([checks.CheckedBody(p.name, p.shapes, p.T_world_part) for p in parts]):
         node.elements()[owners[j]]["parts"].fail(f"part {parts[j].name} overlaps part {parts[i].name}")
-    room = [checks.CheckedBody(o.name, o.shapes, o.pose) for o in obstacles]
+    room = _checked(obstacles + ground)
     typed = [(k, part) for k, t in enumerate(trays) if t.scan is None for part in t.tray.parts]
     bodies = [checks.CheckedBody(part.name, part.shapes, part.T_world_part) for _, part in typed]
     for i, j in checks.overlapping_bodies(room + bodies) if bodies else []:
         if i < len(room) <= j:
             k, part = typed[j - len(room)]
-            node.elements()[k]["parts"].fail(f"part {part.name} overlaps {obstacles[i].name} by more than 0.1 mm")
+            node.elements()[k]["parts"].fail(
+                f"part {part.name} overlaps {(obstacles + ground)[i].name} by more than 0.1 mm"
+            )
+
+
+def _checked(bodies: list[Obstacle]) -> list[checks.CheckedBody]:
+    return [checks.CheckedBody(o.name, o.shapes, o.pose) for o in bodies]
 
 
 def _check_stands_free(node: Node, scenario: Scenario) -> None:

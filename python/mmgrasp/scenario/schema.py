@@ -15,6 +15,7 @@ _TYPES: dict[str, tuple[type, ...]] = {
     "boolean": (bool,),
     "integer": (int,),
     "number": (int, float),
+    "null": (type(None),),
 }
 WORDS = {
     *("$ref", "type", "const", "enum", "oneOf", "properties", "required", "additionalProperties", "patternProperties"),
@@ -90,9 +91,10 @@ def _broken(value: Any, schema: dict[str, Any]) -> str:
         return f"must be {schema['const']!r}"
     if "enum" in schema and value not in schema["enum"]:
         return "must be one of " + ", ".join(map(str, schema["enum"]))
-    kind = schema.get("type")
-    if kind and (not isinstance(value, _TYPES[kind]) or (isinstance(value, bool) and kind != "boolean")):
-        return f"must be {'an' if kind[0] in 'aio' else 'a'} {kind}"
+    kinds = schema.get("type", [])
+    kinds = [kinds] if isinstance(kinds, str) else kinds
+    if kinds and not any(_is_of(value, kind) for kind in kinds):
+        return "must be " + " or ".join(map(_with_article, kinds))
     if isinstance(value, str):
         if len(value) < schema.get("minLength", 0):
             return "must be a text that is not empty"
@@ -104,6 +106,14 @@ def _broken(value: Any, schema: dict[str, Any]) -> str:
     elif isinstance(value, int | float) and not isinstance(value, bool):
         return _out_of_range(value, schema)
     return ""
+
+
+def _is_of(value: Any, kind: str) -> bool:
+    return isinstance(value, _TYPES[kind]) and (not isinstance(value, bool) or kind == "boolean")
+
+
+def _with_article(kind: str) -> str:
+    return kind if kind == "null" else f"{'an' if kind[0] in 'aio' else 'a'} {kind}"
 
 
 def _out_of_range(value: float, schema: dict[str, Any]) -> str:

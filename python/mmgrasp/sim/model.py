@@ -144,7 +144,9 @@ class _Builder:
         ET.SubElement(default, "geom", solref="0.006 1", solimp="0.95 0.99 0.001", condim="4", density="500")
         self.asset = ET.SubElement(self.root, "asset")
         world = ET.SubElement(self.root, "worldbody")
-        self._geom(world, "floor", FLOOR, physics.scene_friction, type="plane", size="20 20 1")
+        self._geom(
+            world, "floor", FLOOR, physics.scene_friction, type="plane", size="20 20 1", pos=f"0 0 {bodies.floor!r}"
+        )
         finger_links = set(gripper.finger_links) if gripper else set()
         self.fingers = [j.name for j in gripper.joints] if gripper else []
         self.coupled = _coupling(gripper) if gripper else {}

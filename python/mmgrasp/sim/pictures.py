@@ -39,7 +39,7 @@ class Painter:
         """uint8 (height, width, 3)."""
         scene = Scene()
         middle = np.asarray(camera.target, float)[:2]
-        scene.add(*floor_tiles(middle - FLOOR_REACH, middle + FLOOR_REACH), FLOOR)
+        scene.add(*floor_tiles(middle - FLOOR_REACH, middle + FLOOR_REACH, self.bodies.floor), FLOOR)
         for body in self.bodies.obstacles:
             scene.add(body.vertices_at(), body.faces, OBSTACLE)
         # Physics may stand a hair beyond a limit, which the model refuses.

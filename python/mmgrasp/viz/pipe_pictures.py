@@ -155,7 +155,7 @@ def write_motion(plan: PipePlan, out: Path) -> Path:
         q = plan.trajectory.at(share * plan.trajectory.duration)
         links = arm.link_poses(q)
         scene = Scene()
-        scene.add(*floor_tiles(focus[:2] - 2, focus[:2] + 2), FLOOR)
+        scene.add(*floor_tiles(focus[:2] - 2, focus[:2] + 2, bodies.floor), FLOOR)
         for body in bodies.obstacles:
             scene.add(body.vertices_at(), body.faces, OBSTACLE)
         for link in bodies.links:

@@ -67,7 +67,7 @@ class PlanScene:
         scene = Scene()
         if floor:
             low, high = self.bounds()
-            scene.add(*floor_tiles(low - 0.5, high + 0.5), FLOOR)
+            scene.add(*floor_tiles(low - 0.5, high + 0.5, self.bodies.floor), FLOOR)
         for body in self.bodies.obstacles:
             scene.add(body.vertices_at(), body.faces, obstacle_colour(body.name))
         links = self.robot_poses(state)

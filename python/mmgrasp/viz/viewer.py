@@ -47,8 +47,10 @@ class PlanViewer:
         )
 
     def _add_scene(self) -> None:
-        self.server.scene.add_grid("/floor", width=20, height=20, cell_size=0.5, section_size=1.0)
         bodies = self.scene.bodies
+        self.server.scene.add_grid(
+            "/floor", width=20, height=20, cell_size=0.5, section_size=1.0, position=(0, 0, bodies.floor)
+        )
         for body in bodies.obstacles:
             self._mesh(f"/scene/{body.name}", body.vertices, body.faces, obstacle_colour(body.name), body.pose)
         for part in bodies.parts.values():

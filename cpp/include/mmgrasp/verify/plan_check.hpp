@@ -139,6 +139,9 @@ struct MMGRASP_EXPORT PlanToCheck {
   Pose T_base_bin = Pose::Identity();
   Eigen::Vector2d bin_size = Eigen::Vector2d(0.3, 0.3);
   double drop_height = 0.03;
+  /// Everything below this height is ground [m], which what the arm joints move must not touch: the arm, the fingers, a
+  /// held part. Other links may (wheels stand on it). -infinity: there is none.
+  double floor = -std::numeric_limits<double>::infinity();
   std::vector<CheckedBody> obstacles;
   std::vector<CheckedPart> parts;
   std::vector<CheckedPair> allowed_collisions;  ///< Not looked at: what else these touch is.
@@ -179,7 +182,8 @@ struct MMGRASP_EXPORT PlanCheckOptions {
 /// - the data: `malformed` (names, lengths, numbers; nothing else is checked then), `stopped` (ended by the monitor);
 /// - the robot: `robot-unreadable` (urdfdom, KDL or assimp cannot make sense of it; nothing else is checked then),
 ///   `robot-differs` (a link or joint that was planned for is not the one of the URDF);
-/// - the scene: `part-overlap` (a part in another one or in an obstacle, deeper than 1e-4 m);
+/// - the scene: `part-overlap` (a part in another one, in an obstacle or in the ground, deeper than 1e-4 m),
+///   `tray-overlap` (a tray's walls in the ground, likewise);
 /// - home: `home-limit`, `home-collision` (robot with itself), `start-collision`, `finger-limit`,
 ///   `finger-links` (fewer than two), `limit-exceeds-robot` (velocity limits above the URDF's), `base-workspace`
 ///   (start, goal, a stop with its uncertainty or a drive outside the base's workspace);

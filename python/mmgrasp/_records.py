@@ -147,7 +147,7 @@ class DriveByEventRow(TypedDict):
     time: float  # [s]
     close_time: float  # [s]
     object: str  # what is held then; empty: nothing
-    held_time: float  # [s]
+    attach_time: float  # [s]
     T_tip_object: list[list[float]] | None  # (4, 4) of what is held
     candidate: int
     base_speed: float  # [m/s]

@@ -173,10 +173,10 @@ def test_output_folders_that_cannot_be_are_told_before_anything_runs(
     for command in (["plan", str(small_path)], ["reproduce", "p2-figure-4.5"]):
         for out in (tmp_path / "file", tmp_path / "file" / "below"):
             assert main([*command, "--out", str(out)]) == 2
-            told = capfd.readouterr()
-            assert f"{out}: cannot be written: {tmp_path / 'file'} is no folder" in told.err
-            assert "s]" not in told.err, "a stage had begun"
-            assert not told.out
+            reported = capfd.readouterr()
+            assert f"{out}: cannot be written: {tmp_path / 'file'} is no folder" in reported.err
+            assert "s]" not in reported.err, "a stage had begun"
+            assert not reported.out
 
 
 def test_view_draws_a_picture(out: Path, tmp_path: Path) -> None:

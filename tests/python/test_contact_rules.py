@@ -46,7 +46,7 @@ def test_a_panda_stands_on_its_table(panda: mg.Robot) -> None:
     assert world.allowed == [("panda_link0", "table")]
     found = mg.plan_motion(panda, arm, world, start=start, goal=goal)
     assert found.outcome == mg.Outcome.solved
-    # The judge of its own agrees, and sees the table when it is not told.
+    # The judge of its own agrees, and sees the table when it is not given it.
     bodies = [mg.verify.CheckedBody(n, world.shapes_of(n), world.pose_of(n)) for n in world.objects]
 
     def check(pairs: list[tuple[str, str]]) -> mg.verify.PathCheckResult:

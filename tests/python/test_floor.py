@@ -66,7 +66,7 @@ def test_a_pit_is_for_who_says_that_there_is_no_floor(low: dict[str, Any], write
     assert {"tray-overlap", "part-overlap"} <= codes
 
 
-@pytest.mark.parametrize(("height", "code"), [(0.01, "held-collision"), (0.03, "scene-collision")])
+@pytest.mark.parametrize(("height", "code"), [(0.01, "attached-collision"), (0.03, "scene-collision")])
 def test_motions_through_the_ground_are_found(low_plan: dict[str, Any], height: float, code: str) -> None:
     """A floor raised under a finished plan is met by the part that is lifted, then by the fingers, never by the base."""
     plan = copy.deepcopy(low_plan)

@@ -131,7 +131,7 @@ def struct_fields(header: str, struct: str) -> dict[str, str]:
 
 
 def test_manipulation_stats_are_the_structs() -> None:
-    """A field that is added to the struct is told in Python too, with its type."""
+    """A field that is added to the struct is reported in Python too, with its type."""
     python = {
         float: {"double"},
         int: {"std::size_t", "int"},

@@ -95,7 +95,7 @@ TEST(ObstacleCells, HoldWhatAnyPixelSaw) {
   }
 }
 
-/// With noise of half a voxel, and errors of the poses that the frames were told of: at 2 sigma nothing seen is free,
+/// With noise of half a voxel, and errors of the poses that the frames were given: at 2 sigma nothing seen is free,
 /// but for what a pose's error moves sideways at a rim. Without the margin much is.
 TEST(ObstacleCells, TwoSigmaHoldWhatNoisyFramesSaw) {
   const auto scenes = primitive_scenes();

@@ -39,7 +39,7 @@ void write(const std::string& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
 }
 
-/// A corner of a room: enough shape for poses to be told apart.
+/// A corner of a room: enough shape for poses to be distinguished.
 std::vector<PlacedShape> room() {
   return {{Box{{0.6, 0.6, 0.02}}, Pose(Eigen::Translation3d(0, 0, -0.01))},
           {Box{{0.10, 0.06, 0.08}}, Pose(Eigen::Translation3d(0.02, 0.03, 0.04))},

@@ -88,6 +88,14 @@ def test_the_shipped_problem_is_pipe1_of_p2() -> None:
     assert problem.preferences.consistency_ratio == pytest.approx(0.0079, abs=5e-5)
 
 
+@pytest.mark.parametrize(("name", "weights"), [("p2", (0.587, 0.089, 0.324)), ("p2_printed", (0.56, 0.12, 0.32))])
+def test_weights_have_names(name: str, weights: tuple[float, ...], tmp_path: Path) -> None:
+    content = shipped() | {"preferences": {"weights": name}}
+    read = load_pipe_problem(written(tmp_path, content)).preferences
+    assert tuple(read.options[f"{key}_weight"] for key in ("motion", "deflection", "manipulability")) == weights
+    assert name in read.source
+
+
 def test_poses_may_be_listed_one_by_one(tmp_path: Path) -> None:
     content = shipped()
     poses = load_pipe_problem("pipe1").T_world_pipe
@@ -125,6 +133,15 @@ def in_pieces(content: dict[str, Any]) -> None:
     content["structure"]["sections"].append({"nodes": [7, 8]})
 
 
+def in_millimetres(content: dict[str, Any]) -> None:
+    content["structure"]["nodes"] = [[1000 * x for x in node] for node in content["structure"]["nodes"]]
+
+
+def short(content: dict[str, Any]) -> None:
+    content["structure"]["nodes"] = [[x / 25 for x in node] for node in content["structure"]["nodes"]]
+    del content["compare"]
+
+
 BAD: list[tuple[str, Change, list[str]]] = [
     ("no format", drop("format"), ["is no pipe problem", "format: mmgrasp-pipe"]),
     ("another format", put("format", value="mmgrasp-scenario"), ["format", "must be one of mmgrasp-pipe"]),
@@ -133,6 +150,9 @@ BAD: list[tuple[str, Change, list[str]]] = [
     # the frame
     ("in pieces", in_pieces, ["structure", "connected"]),
     ("no length", put("structure", "nodes", 1, value=[-0.2, -0.248, -0.097]), ["structure", "0"]),
+    ("in millimetres", in_millimetres, ["structure.nodes", "span ", "coordinates are in metres"]),
+    ("too thick for the hand", put("structure", "outer_diameter", value=0.3), ["structure", "no section fits the hand", "0.3 m thick"]),
+    ("too short for the hand", short, ["structure", "longer than its fingers are wide"]),
     ("no thickness", put("structure", "outer_diameter", value=0), ["structure.outer_diameter = 0", "must be > 0"]),
     ("inner not less", put("structure", "inner_diameter", value=0.012), ["inner_diameter = 0.012", "less than the outer diameter, 0.012 m"]),
     ("own inner not less", put("structure", "sections", 2, value={"nodes": [2, 3], "inner_diameter": 0.02}), ["sections[2].inner_diameter = 0.02", "less than"]),
@@ -160,6 +180,7 @@ BAD: list[tuple[str, Change, list[str]]] = [
     ("inconsistent", put("preferences", "comparison", value=[[1, 5, 0.2], [0.2, 1, 5], [5, 0.2, 1]]), ["preferences.comparison", "10"]),
     ("two rows", put("preferences", "comparison", value=[[1, 2], [0.5, 1]]), ["preferences.comparison", "three rows"]),
     ("both ways", put("preferences", "weights", value={"motion": 1, "deflection": 1, "manipulability": 1}), ["preferences", "not both"]),
+    ("no such weights", put("preferences", value={"weights": "p3"}), ["preferences.weights", "must be one of p2, p2_printed"]),
     ("nothing counts", put("preferences", value={"weights": {"motion": 0, "deflection": 0, "manipulability": 0}}), ["preferences.weights", "above zero"]),
     ("no limit", put("limits", "sag", value=0), ["limits.sag = 0", "> 0"]),
     ("too quick", put("timing", "speed", value=1.5), ["timing.speed = 1.5", "at most 1"]),

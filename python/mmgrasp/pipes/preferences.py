@@ -11,6 +11,9 @@ from .structure_section import STIFFEST
 OBJECTIVES = ("motion", "deflection", "manipulability")
 """Joint motion (O1), sag (O2), force manipulability (O3) of P2 3.2.3.3, in this order in comparison matrices, too."""
 
+NAMED_WEIGHTS = {"p2": (0.587, 0.089, 0.324), "p2_printed": (0.56, 0.12, 0.32)}
+"""Of P2's comparison matrix by P2's method (the default), and those that P2 prints for it, which belong to another matrix."""
+
 
 @dataclass(frozen=True)
 class Preferences:
@@ -33,11 +36,8 @@ def read_preferences(root: Node) -> Preferences:
     options: dict[str, float] = {}
     ratio, source = None, Preferences.source
     if "weights" in node:
-        given = node["weights"].mapping(" ".join(OBJECTIVES))
-        options = {f"{key}_weight": given[key].number(least=0) for key in OBJECTIVES}
-        if not any(options.values()):
-            node["weights"].fail("at least one must be above zero")
-        source = "weights given"
+        options = _read_weights(node["weights"])
+        source = f"weights {node['weights'].raw}" if isinstance(node["weights"].raw, str) else "weights given"
     if "comparison" in node:
         rows = node["comparison"].elements()
         if len(rows) != len(OBJECTIVES):
@@ -54,6 +54,18 @@ def read_preferences(root: Node) -> Preferences:
         scales = node["scales"].mapping("", " ".join(OBJECTIVES))
         options |= {f"{key}_scale": value.number(above=0) for key, value in scales.items()}
     return Preferences(options, source, ratio)
+
+
+def _read_weights(node: Node) -> dict[str, float]:
+    """A name of NAMED_WEIGHTS, or a number for each objective."""
+    if isinstance(node.raw, str):
+        values: tuple[float, ...] = NAMED_WEIGHTS[node.choice(*NAMED_WEIGHTS)]
+    else:
+        given = node.mapping(" ".join(OBJECTIVES))
+        values = tuple(given[key].number(least=0) for key in OBJECTIVES)
+    if not any(values):
+        node.fail("at least one must be above zero")
+    return {f"{key}_weight": value for key, value in zip(OBJECTIVES, values, strict=True)}
 
 
 @dataclass(frozen=True)

@@ -123,6 +123,7 @@ def load_pipe_problem(
     setup = read_arm(root, progress)
     if setup.robot.base == "diff_drive":
         root["robot"].fail("its base cannot go sideways as the pipe's path may ask: base must be fixed or omni")
+    _check_holdable(root["structure"], pipe, setup.gripper)
     path_options, search_options = _read_options(root)
     for key, value in (("seed", seed), ("threads", threads), ("algorithm", algorithm)):
         if value is not None:
@@ -156,6 +157,17 @@ def _read_world(root: Node, robot: Robot) -> World:
         world.add(name, read_shapes(node, find_file), node["pose"].pose() if "pose" in node else np.eye(4))
     read_contact_rules(root, robot, list(world.objects), [PIPE]).apply(world)
     return world
+
+
+def _check_holdable(node: Node, pipe: Pipe, gripper: Hand) -> None:
+    """Some section fits between the fingers and is longer than they are wide."""
+    thin = [length for length, wide in zip(pipe.lengths, pipe.diameters, strict=True) if wide <= gripper.max_opening]
+    if not thin:
+        node.fail(
+            f"no section fits the hand, which opens {gripper.max_opening:g} m: the thinnest is {min(pipe.diameters):g} m thick"
+        )
+    if max(thin) <= gripper.finger_width:
+        node.fail(f"no section that fits the hand is longer than its fingers are wide, {gripper.finger_width:g} m")
 
 
 def _read_timing(root: Node) -> tuple[float, float]:

@@ -10,6 +10,7 @@ from .._core import BeamFrame, BeamMaterial, BeamMember, InvalidInput, NodeLoad,
 from ..documents.reading import Node, near_miss
 
 STIFFEST = 1e13  # no modulus and no stress in a file is larger [Pa]
+LONGEST = 100.0  # no arm carries a pipe that spans more [m]
 SHARED = "outer_diameter inner_diameter material"
 _Made = TypeVar("_Made")
 
@@ -19,6 +20,9 @@ def read_structure(node: Node, stress_limit: float = 0.0) -> tuple[Pipe, BeamFra
     node.mapping("nodes sections", SHARED + " materials loads")
     materials = _read_materials(node, stress_limit)
     nodes = [element.numbers(3) for element in node["nodes"].elements()]
+    span = max((max(values) - min(values) for values in zip(*nodes, strict=True)), default=0.0)
+    if span > LONGEST:
+        node["nodes"].fail(f"span {span:g} m, must be at most {LONGEST:g} m: coordinates are in metres")
     pairs, diameters, members = [], [], []
     for element in node["sections"].elements():
         element.mapping("nodes", SHARED)

@@ -18,6 +18,7 @@ from .grasp_search_runs import (
     all_runs,
     describe,
     interval,
+    on_all_cores,
     optima,
     options_of,
     pairs,
@@ -287,31 +288,33 @@ def run_table_3_11(context: Context) -> Result:
 
 
 # --- figure 3.12 ------------------------------------------------------------------------------------------------------
-def both_ways(pipe: str, run: int, rounds: int, seed: int) -> dict[str, Any]:
-    """One run over all arm configurations and one that keeps to the nearest, with the same seed."""
-    out: dict[str, Any] = {"pipe": pipe, "run": run}
-    for way, single in (("multi", False), ("single", True)):
-        begun = time.perf_counter()
-        found = search(
-            pipe,
-            single_configuration=single,
-            max_evaluations=ROUND * rounds,
-            seed=10_000 * seed + run,
-            **options_of("Str3", 7),
-        )
-        out[f"{way} seconds"] = time.perf_counter() - begun
-        costs = np.array(found.history)[ROUND - 1 :: ROUND]
-        out[way] = [float(c) if np.isfinite(c) else None for c in costs]
-    return out
+def both_ways(pipe: str, runs: int, rounds: int, seed: int) -> dict[str, Any]:
+    """Each run once over all arm configurations and once keeping to the nearest, with the same seed."""
+
+    def one(run: int) -> dict[str, Any]:
+        out: dict[str, Any] = {"pipe": pipe, "run": run}
+        for way, single in (("multi", False), ("single", True)):
+            begun = time.perf_counter()
+            found = search(
+                pipe,
+                single_configuration=single,
+                max_evaluations=ROUND * rounds,
+                seed=10_000 * seed + run,
+                **options_of("Str3", 7),
+            )
+            out[f"{way} seconds"] = time.perf_counter() - begun
+            costs = np.array(found.history)[ROUND - 1 :: ROUND]
+            out[way] = [float(c) if np.isfinite(c) else None for c in costs]
+        return out
+
+    return {"runs": on_all_cores(one, runs)}
 
 
 def run_figure_3_12(context: Context) -> Result:
     pipes, _, runs, _, _ = scale_of(context)
     rounds = 10 if context.quick else 30
-    items = [
-        {"pipe": pipe, "run": run, "rounds": rounds, "seed": context.seed} for pipe in pipes for run in range(runs)
-    ]
-    done = context.sweep(both_ways, items, "one configuration and many")
+    items = [{"pipe": pipe, "runs": runs, "rounds": rounds, "seed": context.seed} for pipe in pipes]
+    done = [d for group in context.sweep(both_ways, items, "one configuration and many") for d in group["runs"]]
     result = Result()
     result.drawing = {"rounds": [ROUND * (k + 1) for k in range(rounds)], "pipes": {}}
     for pipe in pipes:

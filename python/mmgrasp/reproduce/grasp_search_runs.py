@@ -11,6 +11,7 @@ from __future__ import annotations
 import functools
 import os
 import time
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
@@ -93,10 +94,10 @@ def search(pipe: str, **options: Any) -> _core.GraspOptimum:
     return optimize_grasp(path_problem(pipe), pipe_structures()[PIPES[pipe] - 1], check_edges=False, **options)
 
 
-def optimum(pipe: str, seed: int, boxes: int, evaluations: int) -> dict[str, Any]:
+def optimum(pipe: str, seed: int, boxes: int, evaluations: int, threads: int = 1) -> dict[str, Any]:
     """The best grasp of branch and bound and of a search with many times P2's budget, and what is proven of it."""
     begun = time.perf_counter()
-    proven = search(pipe, algorithm="branch_and_bound", max_boxes=boxes, time_limit=1e6, seed=seed, threads=1)
+    proven = search(pipe, algorithm="branch_and_bound", max_boxes=boxes, time_limit=1e6, seed=seed, threads=threads)
     seconds = time.perf_counter() - begun
     longer = search(pipe, max_evaluations=evaluations, seed=seed + 1000)
     best = min((r for r in (proven, longer) if r.grasp is not None), key=lambda r: r.path.cost)
@@ -117,6 +118,12 @@ def optimum(pipe: str, seed: int, boxes: int, evaluations: int) -> dict[str, Any
     }
 
 
+def on_all_cores(run: Callable[[int], Any], runs: int) -> list[Any]:
+    """Of each run its own seed; the calls below leave Python free meanwhile."""
+    with ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
+        return list(pool.map(run, range(runs)))
+
+
 def runs_of(pipe: str, method: str, setting: int, runs: int, seed: int, target: float) -> dict[str, Any]:
     """Runs that differ in their seed; each ends at the target or when the budget is spent."""
 
@@ -126,8 +133,7 @@ def runs_of(pipe: str, method: str, setting: int, runs: int, seed: int, target: 
         result = search(pipe, max_evaluations=BUDGET, target=target, seed=seeds, **options_of(method, setting))
         return result, time.perf_counter() - begun
 
-    with ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
-        done = list(pool.map(one, range(runs)))
+    done = on_all_cores(one, runs)
     return {
         "pipe": pipe,
         "method": method,
@@ -154,7 +160,9 @@ def optima(context: Context) -> dict[str, dict[str, Any]]:
     key = (context.quick, context.seed)
     if ("optima", *key) not in _KEPT:
         pipes, _, _, boxes, evaluations = scale_of(context)
-        items = [{"pipe": p, "seed": context.seed, "boxes": boxes, "evaluations": evaluations} for p in pipes]
+        items = [
+            {"pipe": p, "seed": context.seed, "boxes": boxes, "evaluations": evaluations, "threads": 0} for p in pipes
+        ]
         _KEPT["optima", *key] = dict(zip(pipes, context.sweep(optimum, items, "optima"), strict=True))
     kept: dict[str, dict[str, Any]] = _KEPT["optima", *key]
     return kept

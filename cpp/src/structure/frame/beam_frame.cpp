@@ -17,13 +17,13 @@ std::string entry(const char* list, std::size_t index) {
   return std::string(list) + "[" + std::to_string(index) + "]";
 }
 
-/// Adds where a rule of a part was broken.
+/// Adds which entry broke a rule of a part. Texts are made only for what fails: searches check a frame for every grasp.
 template <typename Check>
-void checked_in(const std::string& where, const Check& check) {
+void check_part(std::size_t member, const char* part, const Check& check) {
   try {
     check();
   } catch (const InvalidInput& error) {
-    throw InvalidInput(where + "." + error.what());
+    throw InvalidInput(entry("members", member) + "." + part + "." + error.what());
   }
 }
 
@@ -37,21 +37,23 @@ void check_members(const BeamFrame& frame) {
   for (std::size_t i = 0; i < frame.members.size(); ++i) {
     const BeamMember& member = frame.members[i];
     const auto [a, b] = member.nodes;
-    const std::string value = "(" + std::to_string(a) + ", " + std::to_string(b) + ")";
-    require(a >= 0 && b >= 0 && a < count && b < count, entry("members", i) + ".nodes", value,
-            "must be indices of the " + std::to_string(count) + " nodes, from 0");
-    require(frame.length(static_cast<int>(i)) >= BeamFrame::kShortest, entry("members", i) + ".nodes", value,
-            "its nodes must be at least 1e-6 m apart");
+    const auto fail = [&, a = a, b = b](const std::string& rule) {
+      const std::string value = "(" + std::to_string(a) + ", " + std::to_string(b) + ")";
+      require(false, entry("members", i) + ".nodes", value, rule);
+    };
+    if (!(a >= 0 && b >= 0 && a < count && b < count))
+      fail("must be indices of the " + std::to_string(count) + " nodes, from 0");
+    if (!(frame.length(static_cast<int>(i)) >= BeamFrame::kShortest)) fail("its nodes must be at least 1e-6 m apart");
     for (std::size_t j = 0; j < i; ++j) {
       const auto [c, d] = frame.members[j].nodes;
-      require(!((a == c && b == d) || (a == d && b == c)), entry("members", i) + ".nodes", value,
-              "joins the same nodes as " + entry("members", j));
+      if ((a == c && b == d) || (a == d && b == c)) fail("joins the same nodes as " + entry("members", j));
     }
-    checked_in(entry("members", i) + ".section", [&] { member.section.check(); });
-    checked_in(entry("members", i) + ".material", [&] { member.material.check(); });
+    check_part(i, "section", [&] { member.section.check(); });
+    check_part(i, "material", [&] { member.material.check(); });
     const Vector3d& y = member.y_towards;
     const Vector3d x = (frame.nodes[b] - frame.nodes[a]).normalized();
-    require(y.allFinite() && (y.isZero(0) || x.cross(y).norm() > 1e-6 * y.norm()), entry("members", i) + ".y_towards",
+    if (y.allFinite() && (y.isZero(0) || x.cross(y).norm() > 1e-6 * y.norm())) continue;
+    require(false, entry("members", i) + ".y_towards",
             "(" + std::to_string(y.x()) + ", " + std::to_string(y.y()) + ", " + std::to_string(y.z()) + ")",
             "must be a direction that does not run along the member, or zero");
   }
@@ -66,9 +68,9 @@ void check_connected(const BeamFrame& frame) {
     used[member.nodes[0]] = used[member.nodes[1]] = true;
   }
   for (std::size_t i = 0; i < frame.nodes.size(); ++i) {
+    if (used[i] && root(parent, static_cast<int>(i)) == root(parent, 0)) continue;
     require(used[i], entry("nodes", i), "of no member", "every node must belong to a member");
-    require(root(parent, static_cast<int>(i)) == root(parent, 0), entry("nodes", i), "not connected to nodes[0]",
-            "a frame is one connected piece");
+    require(false, entry("nodes", i), "not connected to nodes[0]", "a frame is one connected piece");
   }
 }
 
@@ -77,7 +79,7 @@ void check_connected(const BeamFrame& frame) {
 void BeamFrame::check() const {
   require(!members.empty(), "members", "[]", "a frame has at least one member");
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    require(nodes[i].allFinite(), entry("nodes", i), "not finite", "must be three finite numbers [m]");
+    if (!nodes[i].allFinite()) require(false, entry("nodes", i), "not finite", "must be three finite numbers [m]");
   }
   check_members(*this);
   check_connected(*this);

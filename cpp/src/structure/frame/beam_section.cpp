@@ -13,7 +13,8 @@ namespace {
 using detail::kPi;
 
 void require_positive(double value, const char* field, const char* unit) {
-  require(std::isfinite(value) && value > 0, field, value, std::string("must be positive [") + unit + "]");
+  if (std::isfinite(value) && value > 0) return;
+  require(false, field, value, std::string("must be positive [") + unit + "]");
 }
 
 }  // namespace

@@ -78,12 +78,15 @@ void SupportedFrame::Data::divide(const std::vector<BeamSupport>& supports) {
   int nodes = static_cast<int>(frame.nodes.size());
   for (std::size_t i = 0; i < supports.size(); ++i) {
     const BeamSupport& support = supports[i];
-    const std::string field = "supports[" + std::to_string(i) + "].";
-    require(support.member >= 0 && support.member < members, field + "member", support.member,
-            "must be one of the " + std::to_string(members) + " members, from 0");
+    if (!(support.member >= 0 && support.member < members)) {
+      require(false, "supports[" + std::to_string(i) + "].member", support.member,
+              "must be one of the " + std::to_string(members) + " members, from 0");
+    }
     const double length = frame.length(support.member), at = support.distance;
-    require(at >= 0 && at <= length + BeamFrame::kShortest, field + "distance", at,
-            "must lie on the member of " + std::to_string(length) + " m");
+    if (!(at >= 0 && at <= length + BeamFrame::kShortest)) {
+      require(false, "supports[" + std::to_string(i) + "].distance", at,
+              "must lie on the member of " + std::to_string(length) + " m");
+    }
     int node = -1;
     if (at < BeamFrame::kShortest) node = frame.members[support.member].nodes[0];
     if (length - at < BeamFrame::kShortest) node = frame.members[support.member].nodes[1];

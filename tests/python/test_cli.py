@@ -59,6 +59,7 @@ def test_verify_accepts_the_plan(out: Path, small_path: Path, capfd: pytest.Capt
     assert json.loads(capfd.readouterr().out)["ok"] is True
 
 
+@pytest.mark.slow
 def test_plan_in_passing(small_path: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     """The command's table says what is saved, and verify looks at the motion in passing too."""
     assert main(["plan", str(small_path), "-o", str(tmp_path), "--drive-by", "--no-pictures"]) == 0

@@ -154,6 +154,7 @@ def floor_slab(small: dict[str, Any]) -> dict[str, Any]:
 WHEELS = [["left_wheel_link", "floor"], ["floor", "right_wheel_link"]]
 
 
+@pytest.mark.slow
 def test_a_scenario_on_a_floor(small: dict[str, Any], write: Callable[..., Path], tmp_path: Path, capsys: Any) -> None:
     scenario = floor_slab(small)
     with pytest.raises(mg.InvalidInput, match="wheel_link touches floor"):

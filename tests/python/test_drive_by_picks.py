@@ -184,6 +184,7 @@ def test_what_is_written(
     assert set(attached[table["time"] >= done.close_at + done.dwell]) == {done.part}
 
 
+@pytest.mark.slow
 def test_physics_takes_the_part(passing: mg.part_supply.DriveByPlan, small_plan: mg.part_supply.ScenarioPlan) -> None:
     """Contact and friction only, with a little noise of the wheels: the part is held at the end, its neighbours stand where they stood."""
     pytest.importorskip("mujoco")

@@ -141,6 +141,7 @@ def test_the_command_ends_on_ctrl_c(small: dict[str, Any], write: Callable[..., 
     assert not list((tmp_path / "cache").rglob("*.reach"))
 
 
+@pytest.mark.slow
 def test_a_plan_survives_when_motions_in_passing_are_interrupted(small_path: Path, tmp_path: Path) -> None:
     """What is found first is a plan of its own: Ctrl-C later ends the command at once and leaves that whole."""
     command = [sys.executable, "-m", "mmgrasp", "plan", str(small_path), "-o", str(tmp_path), "--drive-by"]

@@ -132,6 +132,7 @@ def test_jerk_limits() -> None:
     assert change.max() <= j * (1 + 1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("robot_name", ["panda", "ur5"])
 def test_motion_bench_maker_is_solved_and_verified(
     robot_name: str, data: Path, capsys: pytest.CaptureFixture[str]

@@ -168,6 +168,7 @@ def test_report_of_no_plan_names_the_tray_and_the_advice() -> None:
     assert "Tray A, part A/brick_0" in page and "no disc of 0.500 m fits" in page and "0.210 m" in page
 
 
+@pytest.mark.slow
 def test_pictures_show_regions_in_the_tray_colours(tmp_path: Path) -> None:
     from PIL import Image
 

@@ -36,6 +36,8 @@ def check_folder(path: Path) -> None:
         os.unlink(trial)
     except IoError:
         raise
+    except FileExistsError:
+        raise IoError(f"{printable(os.fspath(path))}: cannot be written: a link on the way leads nowhere") from None
     except (OSError, ValueError) as error:
         raise _cannot_write(path, error) from None
     finally:

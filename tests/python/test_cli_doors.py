@@ -53,6 +53,15 @@ def test_options_out_of_range(
     assert not list(tmp_path.iterdir())
 
 
+def test_a_current_folder_that_is_gone(tmp_path: Path) -> None:
+    code = "import os, sys; os.rmdir(os.getcwd()); from mmgrasp.cli import main; sys.exit(main(['check', 'r.urdf']))"
+    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, timeout=120)
+    assert (done.returncode, done.stderr) == (
+        2,
+        "mmgrasp: the current folder is no longer there: change to another one\n",
+    )
+
+
 @pytest.mark.parametrize("command", [["plan", "{}", "-o", "out"], ["verify", "{}"], ["view", "{}", "--png", "x.png"]])
 @pytest.mark.parametrize("what", ["/dev/zero", "pipe", "folder", "missing"])
 def test_files_that_are_none(

@@ -245,6 +245,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parsed = build_parser().parse_args(arguments)
     console = Console(highlight=False)
     try:
+        os.getcwd()
+    except FileNotFoundError:
+        print("mmgrasp: the current folder is no longer there: change to another one", file=sys.stderr)
+        return BAD_INPUT
+    try:
         return COMMANDS[parsed.command](parsed, console)
     except BrokenPipeError:  # nobody reads on: what is still in the buffer is not for the interpreter's end either
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)

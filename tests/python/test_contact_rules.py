@@ -206,6 +206,7 @@ def test_bad_keys_are_refused(
         mg.load_scenario(write(scenario))
 
 
+@pytest.mark.slow
 def test_a_scenario_with_padding(small: dict[str, Any], write: Callable[..., Path]) -> None:
     scenario = copy.deepcopy(small)
     scenario["padding"] = {"links": 0.005, "by_name": {"gripper": 0}}

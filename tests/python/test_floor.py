@@ -48,6 +48,7 @@ def test_a_tray_stands_on_the_ground(low: dict[str, Any], low_plan: dict[str, An
     assert 0 < min(heights) < 0.1
 
 
+@pytest.mark.slow
 def test_a_pit_is_for_who_says_that_there_is_no_floor(low: dict[str, Any], write: Write) -> None:
     """What an audit found: a tray 8 cm under the ground was planned and verified, fingers under the ground."""
     pit = at(low, -0.075)

@@ -52,6 +52,7 @@ def truth_at(place: np.ndarray) -> tuple[mg.LinkShape, np.ndarray]:
     return mg.LinkShape(shape), mg.pose([*(FLOOR + [x, y, 0.001 + height / 2])], rpy=[0, 0, yaw])
 
 
+@pytest.mark.slow
 def test_every_part_is_found_where_it_lies(planned: mg.scenario.Scenario) -> None:
     parts = planned.trays[0].tray.parts
     assert [p.name for p in parts] == [f"mixed/object_{k}" for k in range(1, 5)]
@@ -69,6 +70,7 @@ def test_every_part_is_found_where_it_lies(planned: mg.scenario.Scenario) -> Non
         assert solid < volume < 1.35 * solid
 
 
+@pytest.mark.slow
 def test_the_plan_holds_against_map_and_truth(plan: dict[str, Any]) -> None:
     verdict = mg.verify_plan(plan, samples=100)
     assert verdict.ok, verdict.faults

@@ -115,6 +115,8 @@ def test_what_cannot_be_held_says_why(tmp_path: Path, capsys: pytest.CaptureFixt
         ({"fingers": {"longest": 5, "shortest": 10}}, "must be at least shortest"),
         ({"fingers": {"lenght": 5}}, "lenght"),
         ({"parts": [{"name": "a", "turned": [[1, 0], [1, 1]]}]}, "at least three rows"),
+        ({"parts": [{"name": "a", "turned": [[True, 0], [1, 0], [1, 1]]}]}, "must be numbers"),
+        ({"parts": [{"name": "a", "turned": [["1", 0], [1, 0], [1, 1]]}]}, "must be numbers"),
         ({"parts": [{"name": "a", "mesh": "a.stl", "box": [1, 1, 1]}]}, "one of mesh, turned and box"),
         ({"parts": [{"name": "a", "mesh": "no_such.stl"}]}, "no_such.stl"),
         ({"version": 9}, "version"),

@@ -226,8 +226,10 @@ class Node:
     def array(self, columns: int | None = None) -> np.ndarray:
         """Numbers or rows of numbers as an array, fast for long lists."""
         try:
+            if not _all_numbers(self.raw):
+                raise TypeError
             out = np.array(self.raw, dtype=float)
-        except (TypeError, ValueError):
+        except (TypeError, ValueError, OverflowError):
             self.fail("must be numbers in rows of equal length")
         if not np.isfinite(out).all():
             self.fail("must be finite numbers")
@@ -247,6 +249,11 @@ class Node:
                 self["quat_xyzw"].fail("must have norm 1")
             return pose(xyz, quat_xyzw=quat)
         return pose(xyz, rpy=self["rpy"].numbers(3) if "rpy" in self else [0, 0, 0])
+
+
+def _all_numbers(raw: Any) -> bool:
+    """Without truth values and texts, which numpy would turn into numbers."""
+    return all(_all_numbers(value) if isinstance(value, list) else type(value) in (int, float) for value in raw)
 
 
 def _keys(raw: Any) -> set[str]:

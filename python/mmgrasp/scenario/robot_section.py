@@ -89,20 +89,29 @@ def profile_path(name: str) -> Path:
 
 def choose_sections(root: Node, robot_name: str | None) -> RobotSections:
     """The scenario's own sections, or those of the profile that `--robot` or `robot: {name: ...}` asks for."""
-    own = root["robot"]
-    replaced = robot_name is not None
-    if robot_name is None and "name" in own:
-        own.mapping("name")
-        robot_name = own["name"].string()
-    if robot_name is None:
-        return RobotSections(own, root["gripper"], root["place_region"])
-    profile = _profile_sections(read_yaml(profile_path(robot_name)).root)
-    if replaced:
-        return profile
+    if robot_name is not None:
+        return _profile_sections(read_yaml(profile_path(robot_name)).root)
+    profile = _named_profile(root["robot"])
+    if profile is None:
+        return RobotSections(root["robot"], root["gripper"], root["place_region"])
     gripper = root["gripper"] if "gripper" in root else profile.gripper
     return RobotSections(
         profile.robot, gripper, root["place_region"] if "place_region" in root else profile.place_region
     )
+
+
+def _named_profile(own: Node) -> RobotSections | None:
+    """The profile that `robot: {name: ...}` asks for; None where the section describes a robot itself."""
+    if not isinstance(own.raw, dict) or not own.raw.keys() & {"name", "urdf"}:
+        own.fail("must be a mapping with urdf, or with the name of a robot profile")
+    if "name" not in own:
+        return None
+    own.mapping("name")
+    try:
+        path = profile_path(own["name"].string())
+    except InvalidInput as error:
+        raise InvalidInput(f"{own['name'].place}: {error}") from None
+    return _profile_sections(read_yaml(path).root)
 
 
 def _profile_sections(profile: Node) -> RobotSections:
@@ -161,13 +170,9 @@ class ArmSetup:
 
 def read_arm(root: Node, progress: Progress = None) -> ArmSetup:
     """The sections `robot` and `gripper` of a file: an arm or an arm on a base, and its gripper; `robot: {name: ...}` takes a profile's."""
-    own = root["robot"]
-    if "name" in own:
-        own.mapping("name")
-        profile = _profile_sections(read_yaml(profile_path(own["name"].string())).root)
-        node, hand = profile.robot, root["gripper"] if "gripper" in root else profile.gripper
-    else:
-        node, hand = own, root["gripper"]
+    profile = _named_profile(root["robot"])
+    node = root["robot"] if profile is None else profile.robot
+    hand = root["gripper"] if profile is None or "gripper" in root else profile.gripper
     node.mapping("urdf group tool_link", ROBOT_KEYS)
     robot = _compose(node)
     tool_link = node["tool_link"].string()

@@ -1,0 +1,17 @@
+"""Files with one value wrong are read or refused with a message that names the file. (`key_fuzz.py` by itself tries every value.)"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from key_fuzz import DOORS, fuzz
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("door", DOORS)
+def test_wrong_values(door: str, tmp_path: Path) -> None:
+    taken, refused = fuzz(door, tmp_path, 150)
+    assert taken > 0
+    assert refused > 75

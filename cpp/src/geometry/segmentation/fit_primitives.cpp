@@ -1,9 +1,9 @@
 #include "mmgrasp/geometry/fit_primitives.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <string>
 
@@ -154,7 +154,7 @@ SegmentSurface segment_surface(const TriangleMesh& mesh, const std::vector<int>&
 
 FittedPrimitive box_candidate(const SegmentSurface& s) {
   FittedPrimitive best;
-  double least = std::numeric_limits<double>::infinity();
+  double least = detail::kInfinity;
   const auto offer = [&](const Vector3d& z, const Vector3d& x) {
     Eigen::Matrix3d axes;
     axes << x, z.cross(x), z;

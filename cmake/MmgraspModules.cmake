@@ -57,7 +57,8 @@ function(mmgrasp_ompl_plugin)
   # OMPL_LIBRARIES also lists Boost's development files, which nothing here needs.
   find_library(MMGRASP_OMPL_LIBRARY ompl HINTS ${OMPL_LIBRARY_DIRS} REQUIRED)
   add_library(mmgrasp_ompl MODULE ${sources})
-  target_include_directories(mmgrasp_ompl PRIVATE ${CMAKE_SOURCE_DIR}/cpp/src)
+  # Of the public headers it may use those of core/detail that need the standard library alone.
+  target_include_directories(mmgrasp_ompl PRIVATE ${CMAKE_SOURCE_DIR}/cpp/src ${CMAKE_SOURCE_DIR}/cpp/include)
   target_include_directories(mmgrasp_ompl SYSTEM PRIVATE ${OMPL_INCLUDE_DIRS})
   target_link_libraries(mmgrasp_ompl PRIVATE ${MMGRASP_OMPL_LIBRARY} Eigen3::Eigen mmgrasp_flags)
   set_target_properties(mmgrasp_ompl PROPERTIES PREFIX "lib" LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)

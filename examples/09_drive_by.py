@@ -81,7 +81,7 @@ camera = Camera(np.array([2.0, -3.4, 2.0]), np.array([2.0, -0.3, 0.72]), 440, 25
 def pictures(times: np.ndarray) -> list[np.ndarray]:
     if states is None:
         chosen = planned_states(
-            real, trajectory, times, [bottle], joints=at_rest, held=("bottle", grasp["time"], "gripper_tcp")
+            real, trajectory, times, [bottle], joints=at_rest, attached=("bottle", grasp["time"], "gripper_tcp")
         )
     else:
         clock = np.array([state["time"] for state in states])

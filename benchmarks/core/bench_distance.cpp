@@ -34,7 +34,7 @@ double median(std::vector<double> values) {
 }
 
 // With `self` the links are measured against each other as well; on many arms neighbours in the chain are then the
-// nearest pair nearly always, so both are told.
+// nearest pair nearly always, so both are reported.
 bool run(const bench::Arm& arm, bool self, int count, int rounds) {
   // Nearer than for yes or no, so that enough of them are hit.
   bench::Arm near = arm;

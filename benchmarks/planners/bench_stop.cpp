@@ -96,7 +96,7 @@ Call transfer(const ManipulationProblem& problem, const std::string& planner) {
 }
 
 /// Across the wall in steps of a tenth of a micrometre.
-Call tool_line(const JointGroup& arm) {
+Call cartesian_path(const JointGroup& arm) {
   return [&arm](const Monitor& monitor) {
     CollisionChecker checker(arm, walled());
     CartesianOptions options;
@@ -168,6 +168,6 @@ int main(int argc, char** argv) {
   for (const std::string& planner : planner_names()) measure(planner, motion(arm, planner), given);
   const ManipulationProblem problem = transfer_problem(arm);
   for (const std::string& planner : manipulation_planner_names()) measure(planner, transfer(problem, planner), given);
-  measure("plan_cartesian", tool_line(arm), given);
+  measure("plan_cartesian", cartesian_path(arm), given);
   measure("time_parameterize", timing(arm), given);
 }

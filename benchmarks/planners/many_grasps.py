@@ -140,7 +140,7 @@ def one_by_one(planner: str):
 
 def today(cell: PipeCell, grasps: list[mg.Grasp], seed: int, given: argparse.Namespace, only_first: bool) -> dict:
     begin, ends = time.process_time(), Ends(cell, grasps)
-    planning, apart = 0.0, 0.0  # [s] in the other program; on what it is told
+    planning, apart = 0.0, 0.0  # [s] in the other program; on what it is given
     for i in ends.usable():
         before = time.process_time()
         starts, goals = ends[i]

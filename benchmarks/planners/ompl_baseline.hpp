@@ -26,7 +26,7 @@ struct EdgeSteps {
 };
 
 /// A planner of OMPL through the plugin's own boundary, with FCL for collisions, as people put the two together:
-/// edges are looked at in the order of OMPL's DiscreteMotionValidator (the end, then ever finer halves).
+/// edges are checked in the order of OMPL's DiscreteMotionValidator (the end, then ever finer halves).
 class OmplBaseline {
  public:
   OmplBaseline(const mmgrasp::JointGroup& group, const mmgrasp::World& world, const EdgeSteps& steps)

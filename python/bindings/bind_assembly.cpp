@@ -184,7 +184,7 @@ void bind_assembly(py::module_& m) {
       "grasp"_a, "operation"_a, py::kw_only(), "step"_a = 0.0005,
       "The finger lengths with which neither fingers nor palm meet the subassemblies: on the approach, along the whole "
       "motion, and while the gripper opens and moves back (P1 5.3.2, 5.3.3). The palm and what carries it count as "
-      "endless. Exact for motions along the approach; others are looked at every `step` [m] with as much margin.");
+      "endless. Exact for motions along the approach; others are checked every `step` [m] with as much margin.");
 }
 
 }  // namespace mmgrasp::python

@@ -1,11 +1,11 @@
 // The least set of grippers for an assembly, and grippers as files.
-#include <limits>
 #include <optional>
 #include <tuple>
 #include <utility>
 
 #include "bindings.hpp"
 #include "given.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/gripper_design/minimal_grippers.hpp"
 
 namespace mmgrasp::python {
@@ -29,11 +29,11 @@ const std::vector<OptionField<MinimalGrippersOptions>>& minimal_grippers_fields(
 }
 
 double or_infinite(const std::optional<Given<double>>& value, const char* name) {
-  return value ? taken(*value, name) : std::numeric_limits<double>::infinity();
+  return value ? taken(*value, name) : detail::kInfinity;
 }
 
 py::object or_none(double value) {
-  return value < std::numeric_limits<double>::infinity() ? py::object(py::float_(value)) : py::none();
+  return value < detail::kInfinity ? py::object(py::float_(value)) : py::none();
 }
 
 std::string shown(double value) {

@@ -129,7 +129,7 @@ void bind_hand(py::module_& m) {
       .def_readonly("joints", &Hand::joints, "The driven joints with their values closed and open.")
       .def_readonly("openings", &Hand::openings, "Openings at equal steps of the joints [m]; empty: linear in them.")
       .def_readonly("preshape", &Hand::preshape, "Groups that the opening does not move, and how far open they stay.")
-      .def_readonly("finger_links", &Hand::finger_links, "Links that may touch the held part.")
+      .def_readonly("finger_links", &Hand::finger_links, "Links that may touch the attached part.")
       .def_readonly("body", &Hand::body, "Boxes around fingers and palm.")
       .def_property_readonly("groups", &Hand::groups, "Names of the joint groups.")
       .def("joint_values", py::overload_cast<double>(&Hand::joint_values, py::const_), py::arg("opening"),

@@ -140,7 +140,7 @@ void bind_manipulation_result(py::module_& m) {
       .def_readonly("warnings", &ManipulationResult::warnings,
                     "What may have kept paths from being found: a roadmap in pieces.")
       .def_readonly("trees", &ManipulationResult::trees,
-                    "With keep_trees: a SearchTree for each grasp still still a candidate and each end.")
+                    "With keep_trees: a SearchTree for each grasp still a candidate and each end.")
       .def_property_readonly(
           "stats", [](const ManipulationResult& r) { return stats_dict(r.stats); },
           "What the search took: seconds, searches, edges checked; what each stage found and when.")

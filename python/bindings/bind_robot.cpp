@@ -1,9 +1,9 @@
-#include <limits>
 #include <map>
 #include <string_view>
 
 #include "bindings.hpp"
 #include "mmgrasp/collision/detail/named_bodies.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/robot/base_motion.hpp"
 #include "mmgrasp/robot/joint_group.hpp"
 #include "mmgrasp/robot/packages.hpp"
@@ -41,7 +41,7 @@ const std::vector<OptionField<BaseLimits>>& base_limit_fields() {
       option<BaseLimits>("workspace", &BaseLimits::workspace, "x and y lie in [-workspace, workspace] [m]"),
       {"wheel_velocity", "float | None",
        [](BaseLimits& limits, const py::handle& value) {
-         limits.wheel_velocity = std::numeric_limits<double>::infinity();
+         limits.wheel_velocity = detail::kInfinity;
          if (!value.is_none() && !value.equal(py::float_(limits.wheel_velocity)))
            convert(value, "wheel_velocity", limits.wheel_velocity);
        },

@@ -118,7 +118,7 @@ void bind_fitted_primitives(py::module_& m) {
       });
   m.def(
       "fit_primitives",
-      [](const MeshShape& mesh, const ArrayLike& labels) {
+      [](const MeshShape& mesh, const ArrayLike& labels, const Progress& progress) {
         const Eigen::VectorXd values = vector_argument(labels, "labels");
         const std::size_t faces = mesh.mesh->triangles.size();
         if (static_cast<std::size_t>(values.size()) != faces)
@@ -126,14 +126,14 @@ void bind_fitted_primitives(py::module_& m) {
                              std::to_string(faces) + ",), one a face");
         std::vector<int> numbers;
         for (Eigen::Index i = 0; i < values.size(); ++i) {
-          require(values[i] == std::floor(values[i]) && std::abs(values[i]) < 1e9, "labels[" + std::to_string(i) + "]",
-                  values[i], "must be a whole number");
+          if (values[i] != std::floor(values[i]) || std::abs(values[i]) >= 1e9)
+            require(false, "labels[" + std::to_string(i) + "]", values[i], "must be a whole number");
           numbers.push_back(static_cast<int>(values[i]));
         }
-        py::gil_scoped_release release;
-        return fit_primitives(*mesh.mesh, numbers);
+        LongCall call(progress);
+        return call.run([&](const Monitor& monitor) { return fit_primitives(*mesh.mesh, numbers, monitor); });
       },
-      "mesh"_a, "labels"_a,
+      "mesh"_a, "labels"_a, py::kw_only(), "progress"_a = py::none(),
       "The cylinder, box, cone or sphere that stands for each segment of a mesh: the one whose volume is closest to "
       "that "
       "of\nthe segment's convex hull, of those with surface on them (P1, section 5.2.2). `labels` (m,): the segment of "

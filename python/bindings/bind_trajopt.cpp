@@ -67,7 +67,7 @@ ViolationRows violations_dict(const std::vector<Violation>& violations) {
 py::dict event_dict(const DriveByEvent& e) {
   return py::dict(
       "waypoint"_a = e.waypoint, "time"_a = e.time, "close_time"_a = e.close_time, "object"_a = e.object,
-      "held_time"_a = e.held_time,
+      "attach_time"_a = e.attach_time,
       "T_tip_object"_a = e.object.empty() ? py::none() : py::object(to_array(e.T_tip_object).attr("tolist")()),
       "candidate"_a = e.candidate, "base_speed"_a = e.base_speed, "tool_speed"_a = e.tool_speed);
 }
@@ -240,7 +240,7 @@ void bind_drive_by_result(py::module_& m) {
             for (const DriveByEvent& e : r.events) events.append(event_dict(e));
             return events;
           },
-          "One dict per task: waypoint, time and close_time [s], object (what is held then), held_time [s] and "
+          "One dict per task: waypoint, time and close_time [s], object (what is held then), attach_time [s] and "
           "T_tip_object, "
           "candidate, base_speed and\ntool_speed [m/s].")
       .def_property_readonly(
@@ -253,7 +253,8 @@ void bind_drive_by_result(py::module_& m) {
       .def_readonly("seconds", &DriveByResult::seconds, "Wall-clock time of the call [s].")
       .def_readonly("report", &DriveByResult::report, "What was tried, and what is broken where, by how much.")
       .def("to_csv", &drive_by_csv, py::arg("between") = 0,
-           "The trajectory's to_csv with two columns more: task, its index in the row of a task's waypoint, and held, "
+           "The trajectory's to_csv with two columns more: task, its index in the row of a task's waypoint, and "
+           "attached, "
            "the "
            "object in the hand.")
       .def(

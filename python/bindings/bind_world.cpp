@@ -160,7 +160,7 @@ void bind_world(py::module_& m) {
           "move",
           [](World& w, const std::string& name, const ArrayLike& pose) { w.move(name, pose_argument(pose, "pose")); },
           py::arg("name"), py::arg("pose"), "Puts an object or a field of the scene at T_world_object (4, 4).")
-      .def("remove", &World::remove, py::arg("name"), "Takes an object, held or not, or a field out of the world.")
+      .def("remove", &World::remove, py::arg("name"), "Takes an object, attached or not, or a field out of the world.")
       .def(
           "attach",
           [](World& w, const std::string& name, const std::string& link, const OptionalArray& pose,
@@ -183,11 +183,12 @@ void bind_world(py::module_& m) {
             w.detach(name, pose_argument(pose, "pose"));
           },
           py::arg("name"), py::arg("pose") = py::none(),
-          "Puts a held object back into the scene at T_world_object; without a pose it leaves the world.")
+          "Puts an attached object back into the scene at T_world_object; without a pose it leaves the world.")
       .def(
           "allow", &World::allow, py::arg("a"), py::arg("b"),
           "The two may touch: they are not checked against each other. Each is a link of the robot, an SRDF group (all "
-          "its\nlinks) or an object, held or not. The pair may come before its objects; a checker raises InvalidInput "
+          "its\nlinks) or an object, attached or not. The pair may come before its objects; a checker raises "
+          "InvalidInput "
           "for names\nthat robot and world lack. remove() takes the pairs of its object back.")
       .def("disallow", &World::disallow, py::arg("a"), py::arg("b"),
            "Takes a pair of allow() back. Raises InvalidInput unless it is there.")
@@ -213,7 +214,7 @@ void bind_world(py::module_& m) {
             return names;
           },
           "Names of the distance fields.")
-      .def_property_readonly("attached", &attached_keys, "Names of the held objects.")
+      .def_property_readonly("attached", &attached_keys, "Names of the attached objects.")
       .def(
           "pose_of",
           [](const World& w, const std::string& name) {

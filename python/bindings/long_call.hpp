@@ -56,7 +56,7 @@ class LongCall {
   }
 
  private:
-  /// False when a signal handler or the progress callback raised; the Python error is then set and the call told to
+  /// False when a signal handler or the progress callback raised; the Python error is then set and the call asked to
   /// stop.
   bool wait();
   /// For a thread that the interpreter's end would kill: without the GIL.

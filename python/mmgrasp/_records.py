@@ -128,15 +128,15 @@ class ManipulationStats(TypedDict):
     roadmap_seconds: float
     search_seconds: float
     graph_searches: int
-    nodes_opened: int
-    grasps_searched: int
-    roadmap_cost: float
-    roadmap_bound: float
-    postures_bound: float
-    edges_checked_robot: int
-    edges_checked_attached: int
-    samples: int
-    vertices: int
+    nodes_opened: int  # pushed to the open lists of graph searches (prm_star_mg without lazy_grasps)
+    grasps_searched: int  # for which prm_star_mg searched a roadmap
+    roadmap_cost: float  # of prm_star_mg's best path before shortening; 0: none is cheaper than the first path
+    roadmap_bound: float  # no path over prm_star_mg's roadmap, or straight, costs less
+    postures_bound: float  # no path between the arm postures that were found costs less
+    edges_checked_robot: int  # for the robot alone, shared by all grasps of an opening
+    edges_checked_attached: int  # for the attached object
+    samples: int  # that rrt_star_mg drew or reassigned
+    vertices: int  # of rrt_star_mg's trees, removed ones included
     stages: dict[str, StageRow]  # by name, in the order of their first improvement
 
 
@@ -147,7 +147,7 @@ class DriveByEventRow(TypedDict):
     time: float  # [s]
     close_time: float  # [s]
     object: str  # what is held then; empty: nothing
-    held_time: float  # [s]
+    attach_time: float  # [s]
     T_tip_object: list[list[float]] | None  # (4, 4) of what is held
     candidate: int
     base_speed: float  # [m/s]

@@ -261,6 +261,11 @@ COMPANIONS: dict[str, dict[str, Any]] = {
     "fit_cuboids.T_world_tray": {"tray_size": [0.3, 0.4, 0.1]},
     "synthesize_grasps.arm_seed": {"arm": ARM},
     "JointTrajectory.accelerations": {"velocities": np.zeros((2, 3))},
+    "CapabilityMap.build.upper": {"voxel": 1, "poses": 2, "threads": 1},
+    **{
+        f"CapabilityMap.build.{name}": {"upper": (1, 1, 2), "voxel": 1, "poses": 2, "threads": 1}
+        for name in ("lower", "approach")
+    },
 }
 OTHERS: dict[str, Any] = {
     "mesh": tetrahedron,

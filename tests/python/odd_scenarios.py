@@ -22,7 +22,7 @@ import mmgrasp as mg
 SCENARIOS = Path(mg.__file__).parent / "assets" / "scenarios"
 FACTORS = [0.25, 0.5, 0.8, 0.95, 1.05, 1.25, 2.0, 4.0]
 SHIFTS = [-0.3, -0.1, -0.02, 0.02, 0.1, 0.3]
-# Numbers that odd values cannot make hopeless at once: what they stand for decides how they are changed.
+# Numbers that odd values cannot make impossible at once: what they stand for decides how they are changed.
 TOUCHED = ("gripper", "place_region", "positioning_uncertainty", "obstacles", "part_types", "trays", "start", "goal")
 
 

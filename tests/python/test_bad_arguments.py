@@ -174,7 +174,7 @@ def test_bad_arrays_are_refused_by_name(argument: Argument) -> None:
             result = call(argument, value)
         except (mg.Error, ValueError, TypeError) as error:
             message = str(error)
-            # What does not fit together is told by the name of one of the two.
+            # What does not fit together is named by the name of one of the two.
             names = (argument.name, "velocity_limits") if what == "one column more" else (argument.name,)
             assert any(name in message for name in names), f"{what}: {message}"
             if isinstance(value, np.ndarray) and what in ("nan", "inf", "-inf"):

@@ -22,6 +22,7 @@ from mmgrasp.grasping import (
     ObjectPathEvaluator,
     ObjectPathProblem,
     Pipe,
+    PipeProvenance,
     SupportedFrame,
     beam_frame,
     copper,
@@ -34,6 +35,7 @@ from mmgrasp.grasping import (
 )
 from mmgrasp.optim import pairwise_weights
 from mmgrasp.problems.pipe_cells import FINGERS, pipe_robot, pipe_structures
+from mmgrasp.reproduce.grasp_search_runs import PIPES, path_problem, search
 
 
 def pipe1() -> tuple[Pipe, BeamFrame]:
@@ -222,6 +224,33 @@ def test_the_optimum_is_proven_to_a_gap() -> None:
     for wrong, rule in (("max_gap", 0.0), ("max_boxes", 0), ("time_limit", 0.0), ("threads", -1)):
         with pytest.raises(mg.InvalidInput, match=wrong):
             optimize_grasp(problem, pipe, algorithm="branch_and_bound", **{wrong: rule})  # type: ignore[arg-type]
+
+
+def test_no_grasp_at_a_millimetre_and_a_degree_undercuts_the_proven_one() -> None:
+    """A slice of benchmarks/structure/run_grid.py: Pipe3 of P2's tables, 15 mm and 30 degrees to either side."""
+    pipe = pipe_structures()[PIPES["Pipe3"] - 1]
+    gripper = pipe_robot("kr6like")[2]
+    proven = search("Pipe3", algorithm="branch_and_bound", max_boxes=20_000, time_limit=1e6)
+    assert proven.outcome == mg.Outcome.solved and proven.gap <= 1e-3
+    assert proven.grasp is not None
+    at = proven.grasp.provenance
+    assert isinstance(at, PipeProvenance)
+    evaluator = ObjectPathEvaluator(path_problem("Pipe3"), check_edges=False)
+    middle, turn = round(1000 * at.length), round(math.degrees(at.angle))
+    margin, length = gripper.finger_width / 2, pipe.lengths[at.section]
+    costs = []
+    for mm in range(middle - 15, middle + 16):
+        if not margin <= mm / 1000 <= length - margin:
+            continue
+        for degrees in range(turn - 30, turn + 31):
+            for flip in (False, True):
+                grasp = pipe.grasp(at.section, mm / 1000, math.radians(degrees), flip, gripper=gripper)
+                result = evaluator.evaluate(grasp)
+                if result.outcome == mg.Outcome.solved:
+                    costs.append(result.cost)
+    assert len(costs) > 500
+    assert proven.lower_bound <= min(costs) <= 1.001 * proven.path.cost
+    assert proven.path.cost <= min(costs) / (1 - 1e-3)
 
 
 def test_sag_alone_asks_for_another_grasp() -> None:

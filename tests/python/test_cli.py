@@ -59,6 +59,7 @@ def test_verify_accepts_the_plan(out: Path, small_path: Path, capfd: pytest.Capt
     assert json.loads(capfd.readouterr().out)["ok"] is True
 
 
+@pytest.mark.slow
 def test_plan_in_passing(small_path: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     """The command's table says what is saved, and verify looks at the motion in passing too."""
     assert main(["plan", str(small_path), "-o", str(tmp_path), "--drive-by", "--no-pictures"]) == 0
@@ -173,10 +174,10 @@ def test_output_folders_that_cannot_be_are_told_before_anything_runs(
     for command in (["plan", str(small_path)], ["reproduce", "p2-figure-4.5"]):
         for out in (tmp_path / "file", tmp_path / "file" / "below"):
             assert main([*command, "--out", str(out)]) == 2
-            told = capfd.readouterr()
-            assert f"{out}: cannot be written: {tmp_path / 'file'} is no folder" in told.err
-            assert "s]" not in told.err, "a stage had begun"
-            assert not told.out
+            reported = capfd.readouterr()
+            assert f"{out}: cannot be written: {tmp_path / 'file'} is no folder" in reported.err
+            assert "s]" not in reported.err, "a stage had begun"
+            assert not reported.out
 
 
 def test_view_draws_a_picture(out: Path, tmp_path: Path) -> None:

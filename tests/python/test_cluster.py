@@ -73,6 +73,7 @@ def processes(tmp_path: Path) -> Iterator[str | None]:
         process.wait()
 
 
+@pytest.mark.slow
 def test_a_killed_worker_costs_only_its_shards(
     processes: str, expected: list[Any], tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
@@ -113,6 +114,7 @@ def test_a_killed_worker_costs_only_its_shards(
     assert len({e.shard for e in events}) == ROW.trays
 
 
+@pytest.mark.slow
 def test_only_missing_shards_are_computed(expected: list[Any], tmp_path: Path) -> None:
     """Local processes this time. A finished shard is read, one that is gone or damaged is computed again."""
     folder = tmp_path / "shards"
@@ -144,6 +146,7 @@ def test_only_missing_shards_are_computed(expected: list[Any], tmp_path: Path) -
             np.testing.assert_array_equal(ours["noise"], alike(**item)["noise"])
 
 
+@pytest.mark.slow
 def test_a_database_drawn_in_parts_is_the_same_file_for_file(tmp_path: Path) -> None:
     options: dict[str, Any] = {"samples": 120_000, "seed": 3, "max_per_cell": 4}
     alone = mg.ReachDatabase.build_to(tmp_path / "alone", ROW.problem().arm, **options)

@@ -46,7 +46,7 @@ def test_a_panda_stands_on_its_table(panda: mg.Robot) -> None:
     assert world.allowed == [("panda_link0", "table")]
     found = mg.plan_motion(panda, arm, world, start=start, goal=goal)
     assert found.outcome == mg.Outcome.solved
-    # The judge of its own agrees, and sees the table when it is not told.
+    # The judge of its own agrees, and sees the table when it is not given it.
     bodies = [mg.verify.CheckedBody(n, world.shapes_of(n), world.pose_of(n)) for n in world.objects]
 
     def check(pairs: list[tuple[str, str]]) -> mg.verify.PathCheckResult:
@@ -146,23 +146,24 @@ def floor_slab(small: dict[str, Any]) -> dict[str, Any]:
     """The small scenario on a floor that the wheels stand in by half a centimetre."""
     scenario = copy.deepcopy(small)
     scenario.setdefault("obstacles", []).append(
-        {"name": "floor", "box": [20, 20, 0.02], "pose": {"xyz": [0, 0, -0.005]}}
+        {"name": "slab", "box": [20, 20, 0.02], "pose": {"xyz": [0, 0, -0.005]}}
     )
     return scenario
 
 
-WHEELS = [["left_wheel_link", "floor"], ["floor", "right_wheel_link"]]
+WHEELS = [["left_wheel_link", "slab"], ["slab", "right_wheel_link"]]
 
 
+@pytest.mark.slow
 def test_a_scenario_on_a_floor(small: dict[str, Any], write: Callable[..., Path], tmp_path: Path, capsys: Any) -> None:
     scenario = floor_slab(small)
-    with pytest.raises(mg.InvalidInput, match="wheel_link touches floor"):
+    with pytest.raises(mg.InvalidInput, match="wheel_link touches slab"):
         mg.load_scenario(write(scenario))
     scenario["allowed_collisions"] = WHEELS
     path = write(scenario)
     plan = mg.plan_part_supply(path)
     assert plan.outcome == mg.Outcome.solved, plan
-    expected = [["floor", "left_wheel_link"], ["floor", "right_wheel_link"]]
+    expected = [["left_wheel_link", "slab"], ["right_wheel_link", "slab"]]
     content = plan.to_dict()
     assert content["scenario"]["allowed_collisions"] == expected
     file = plan.save(tmp_path / "plan.json")
@@ -170,16 +171,16 @@ def test_a_scenario_on_a_floor(small: dict[str, Any], write: Callable[..., Path]
     assert verdict.ok, verdict.faults
     assert verdict.allowed_collisions == [tuple(pair) for pair in expected]
     assert main(["verify", str(file), "--samples", "50"]) == 0
-    assert "not checked, since the scenario lets them touch: floor and left_wheel_link" in capsys.readouterr().out
+    assert "not checked, since the scenario lets them touch: left_wheel_link and slab" in capsys.readouterr().out
     # Without the pairs in the file, the judge sees the wheels in the floor; a name it does not know is malformed.
     del content["scenario"]["allowed_collisions"]
     codes = {fault.code for fault in mg.verify_plan(content, samples=50).faults}
     assert codes & {"start-collision", "route-collision"}
-    content["scenario"]["allowed_collisions"] = [["floor", "wheel"]]
+    content["scenario"]["allowed_collisions"] = [["slab", "wheel"]]
     faults = mg.verify_plan(content, samples=50).faults
     assert [(f.code, f.where) for f in faults] == [("malformed", "allowed_collisions")]
     # The file was written for other pairs.
-    scenario["allowed_collisions"] = [*WHEELS, ["gripper", "floor"]]
+    scenario["allowed_collisions"] = [*WHEELS, ["gripper", "slab"]]
     changed = mg.verify_plan(file, scenario=write(scenario), samples=50).faults
     assert [f.code for f in changed] == ["scenario-changed"]
 
@@ -187,7 +188,7 @@ def test_a_scenario_on_a_floor(small: dict[str, Any], write: Callable[..., Path]
 @pytest.mark.parametrize(
     ("key", "value", "message"),
     [
-        ("allowed_collisions", [["left_whel_link", "floor"]], r"scenario.yaml:\d+: allowed_collisions\[0\]\[0\] = 'left_whel_link'.*did you mean left_wheel_link"),
+        ("allowed_collisions", [["left_whel_link", "slab"]], r"scenario.yaml:\d+: allowed_collisions\[0\]\[0\] = 'left_whel_link'.*did you mean left_wheel_link"),
         ("allowed_collisions", [["left_wheel_link"]], r"allowed_collisions\[0\] = .*must be a pair of names"),
         ("allowed_collisions", ["left_wheel_link"], "must be a list"),
         ("allowed_collisions", {"a": "b"}, "must be a list"),
@@ -205,6 +206,7 @@ def test_bad_keys_are_refused(
         mg.load_scenario(write(scenario))
 
 
+@pytest.mark.slow
 def test_a_scenario_with_padding(small: dict[str, Any], write: Callable[..., Path]) -> None:
     scenario = copy.deepcopy(small)
     scenario["padding"] = {"links": 0.005, "by_name": {"gripper": 0}}

@@ -179,11 +179,12 @@ def test_what_is_written(
     taken = table["time"][table["task"] == 1]  # the grasp; task 0 is the place before it
     assert len(taken) == 1
     assert taken[0] == pytest.approx(done.close_at)
-    held = table["held"]
-    assert set(held[table["time"] < done.close_at - 1e-9]) == {""}
-    assert set(held[table["time"] >= done.close_at + done.dwell]) == {done.part}
+    attached = table["attached"]
+    assert set(attached[table["time"] < done.close_at - 1e-9]) == {""}
+    assert set(attached[table["time"] >= done.close_at + done.dwell]) == {done.part}
 
 
+@pytest.mark.slow
 def test_physics_takes_the_part(passing: mg.part_supply.DriveByPlan, small_plan: mg.part_supply.ScenarioPlan) -> None:
     """Contact and friction only, with a little noise of the wheels: the part is held at the end, its neighbours stand where they stood."""
     pytest.importorskip("mujoco")
@@ -215,8 +216,8 @@ def test_clock_and_report_know_of_it(
     start, end = timeline.state_at(0.0), timeline.state_at(done.drive_by - 1e-9)
     assert start.base == pytest.approx(motion["positions"][0][:3])
     assert end.arm == pytest.approx(motion["positions"][-1][3:], abs=1e-6)
-    assert timeline.state_at(motion["closed_at"] - 0.01).held is None
-    held = timeline.state_at(motion["closed_at"] + 0.01).held
+    assert timeline.state_at(motion["closed_at"] - 0.01).attached is None
+    held = timeline.state_at(motion["closed_at"] + 0.01).attached
     assert held is not None and held[0] == done.part
     assert len(timeline.grasp_times()) == len(content["picks"])
     assert "Parts taken in passing" in report_html(content)

@@ -48,6 +48,7 @@ def test_a_tray_stands_on_the_ground(low: dict[str, Any], low_plan: dict[str, An
     assert 0 < min(heights) < 0.1
 
 
+@pytest.mark.slow
 def test_a_pit_is_for_who_says_that_there_is_no_floor(low: dict[str, Any], write: Write) -> None:
     """What an audit found: a tray 8 cm under the ground was planned and verified, fingers under the ground."""
     pit = at(low, -0.075)
@@ -62,11 +63,11 @@ def test_a_pit_is_for_who_says_that_there_is_no_floor(low: dict[str, Any], write
     assert content["scenario"]["floor"] is None
     assert mg.verify_plan(content).ok
     content["scenario"]["floor"] = 0.0
-    codes = {fault.code for fault in mg.verify_plan(content).faults}
+    codes = {fault.code for fault in mg.verify_plan(content, samples=10, region_samples=1).faults}
     assert {"tray-overlap", "part-overlap"} <= codes
 
 
-@pytest.mark.parametrize(("height", "code"), [(0.01, "held-collision"), (0.03, "scene-collision")])
+@pytest.mark.parametrize(("height", "code"), [(0.01, "attached-collision"), (0.03, "scene-collision")])
 def test_motions_through_the_ground_are_found(low_plan: dict[str, Any], height: float, code: str) -> None:
     """A floor raised under a finished plan is met by the part that is lifted, then by the fingers, never by the base."""
     plan = copy.deepcopy(low_plan)

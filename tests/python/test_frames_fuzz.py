@@ -58,6 +58,7 @@ def tiny(taken: list[Shot]) -> list[Shot]:
     return [Shot(shot.raw[::10, ::10].copy(), shot.T_world_camera, shot.quat_xyzw) for shot in taken]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("layout", WRITERS)
 def test_damaged_files_of_every_layout(layout: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     small = {"width": 16, "height": 12, "fx": 18.0, "fy": 18.0, "cx": 7.5, "cy": 5.5}

@@ -34,6 +34,7 @@ def tried(grasp: mg.Grasp, **keywords: Any) -> pick_trial.TrialOutcome:
     return pick_trial.try_grasp(BOX, PLACE, options["mass"], way, options["opening"], options["physics"])
 
 
+@pytest.mark.slow
 def test_a_box_held_in_its_middle_does_not_move() -> None:
     found = tried(from_above())
     assert found.success and found.precise and found.moved < 0.001 and found.turned < 0.02
@@ -45,6 +46,7 @@ def test_a_hand_beside_the_box_holds_nothing() -> None:
     assert not found.success and not found.precise
 
 
+@pytest.mark.slow
 def test_a_box_off_the_middle_is_shifted_by_as_much() -> None:
     """The fingers close evenly, so that a box 8 mm aside is pushed to the hand's middle."""
     found = tried(from_above(aside=0.008))
@@ -53,6 +55,7 @@ def test_a_box_off_the_middle_is_shifted_by_as_much() -> None:
     assert far.success and not far.precise and far.moved == pytest.approx(0.014, abs=0.002)
 
 
+@pytest.mark.slow
 def test_fingers_carry_what_friction_lets_them() -> None:
     """Two fingers of 40 N with friction 0.2 carry 2 x 0.2 x 40 N = 16 N: 1.6 kg, not more."""
     smooth = Physics(finger_friction=0.2)
@@ -69,6 +72,7 @@ def test_ways_that_the_arm_cannot_go_are_left_out() -> None:
     assert pick_trial.arm_way(mg.Grasp(inside, 0.04)) is None
 
 
+@pytest.mark.slow
 def test_an_attempt_is_the_same_again() -> None:
     first = unknown_objects.attempt("box", 0, 3)
     assert first == unknown_objects.attempt("box", 0, 3)

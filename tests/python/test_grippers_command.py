@@ -18,6 +18,8 @@ from mmgrasp.grippers.planning import GripperPlan, operation_of
 from mmgrasp.grippers.rehearsal import rehearse
 from mmgrasp.grippers.turned_parts import block, turned
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def pulley() -> GripperPlan:
@@ -73,8 +75,9 @@ def test_rehearsal_meets_what_too_short_fingers_would(pulley: GripperPlan) -> No
 
 
 def test_command_writes_files_that_load(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["grippers", "pulley", "-o", str(tmp_path / "out"), "--no-pictures"]) == 0
-    assert main(["grippers", "pulley", "-o", str(tmp_path / "out")]) == 0  # the same folder again
+    two = str(changed(tmp_path, order=[{"part": "base"}, {"part": "shaft", "from": {"xyz": [0, 0, 80]}}]))
+    assert main(["grippers", two, "-o", str(tmp_path / "out"), "--no-pictures"]) == 0
+    assert main(["grippers", two, "-o", str(tmp_path / "out")]) == 0  # the same folder again
     printed = capsys.readouterr().out
     assert "proven: no set of grippers costs less" in printed
     result = json.loads((tmp_path / "out" / "result.json").read_text())
@@ -89,7 +92,8 @@ def test_command_writes_files_that_load(tmp_path: Path, capsys: pytest.CaptureFi
 
 
 def test_what_cannot_be_held_says_why(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    file = changed(tmp_path, actuators=[{"name": "jaws", "fingers": 2, "stroke": 48, "max_opening": 48}])
+    order = [{"part": part, "from": {"xyz": [0, 0, 80]}} for part in ("shaft", "sleeve")]
+    file = changed(tmp_path, order=order, actuators=[{"name": "jaws", "fingers": 2, "stroke": 48, "max_opening": 48}])
     assert main(["grippers", str(file), "-o", str(tmp_path / "out"), "--no-pictures"]) == 3
     printed = capsys.readouterr().out
     assert "no actuator has 3 fingers" in printed

@@ -108,10 +108,10 @@ def test_lines_and_timing_tell_their_progress() -> None:
         "check timed path": lambda **k: mg.planning.time_parameterize_free(CHECKER, [Q, Q / 2], **k),
     }
     for stage, call in calls.items():
-        told: list[tuple[str, float]] = []
-        call(progress=lambda *now, told=told: told.append(now))
-        assert told and {name for name, _ in told} == {stage}
-        assert all(0 <= fraction <= 1 for _, fraction in told)
+        reported: list[tuple[str, float]] = []
+        call(progress=lambda *now, reported=reported: reported.append(now))
+        assert reported and {name for name, _ in reported} == {stage}
+        assert all(0 <= fraction <= 1 for _, fraction in reported)
 
 
 def test_an_error_in_the_progress_callback_ends_the_call(small_path: Path) -> None:
@@ -141,6 +141,7 @@ def test_the_command_ends_on_ctrl_c(small: dict[str, Any], write: Callable[..., 
     assert not list((tmp_path / "cache").rglob("*.reach"))
 
 
+@pytest.mark.slow
 def test_a_plan_survives_when_motions_in_passing_are_interrupted(small_path: Path, tmp_path: Path) -> None:
     """What is found first is a plan of its own: Ctrl-C later ends the command at once and leaves that whole."""
     command = [sys.executable, "-m", "mmgrasp", "plan", str(small_path), "-o", str(tmp_path), "--drive-by"]

@@ -129,6 +129,20 @@ def test_ompl_stays_in_its_plugin() -> None:
     assert not wrong
 
 
+def test_numbers_and_clocks_are_written_once() -> None:
+    """Pi and infinity are in core/detail/numbers.hpp, clocks in stopwatch.hpp; public headers have the standard library alone."""
+    again = re.compile(r"M_PI\b|3\.14159|numeric_limits<double>::infinity|(steady|high_resolution)_clock::now")
+    once = {"numbers.hpp", "stopwatch.hpp"}
+    wrong = [
+        f"{relative(path)} says {found[0]}"
+        for root in (SOURCE, REPOSITORY / "python/bindings", PUBLIC)
+        for path in sorted(root.rglob("*"))
+        if path.suffix in INCLUDED and path.name not in once and (root != PUBLIC or is_detail(path))
+        if (found := again.search(path.read_text()))
+    ]
+    assert not wrong
+
+
 def test_architecture_page_is_what_the_includes_say() -> None:
     page = (REPOSITORY / "docs" / "architecture.md").read_text()
     assert page == architecture_page(), "out of date: ./dev architecture"

@@ -365,14 +365,14 @@ def test_other_threads_run_meanwhile() -> None:
 
 
 def test_goal_cost_may_be_infinite() -> None:
-    told: list[mg.planning.Improvement] = []
+    reported: list[mg.planning.Improvement] = []
     first = mg.plan_manipulation(
-        problem(), planner="rrt_star_mg", goal_cost=float("inf"), seed=3, time_limit=100.0, on_solution=told.append
+        problem(), planner="rrt_star_mg", goal_cost=float("inf"), seed=3, time_limit=100.0, on_solution=reported.append
     )
     assert first.outcome == mg.Outcome.solved
     # The first path alone; all that follows is that waypoints it can do without leave it.
-    assert [str(better.stage) for better in told[1:]] in ([], ["shortening"])
-    assert first.cost == told[-1].cost
+    assert [str(better.stage) for better in reported[1:]] in ([], ["shortening"])
+    assert first.cost == reported[-1].cost
     for wrong in (float("nan"), -float("inf"), -1.0):
         with pytest.raises(mg.InvalidInput, match="goal_cost"):
             mg.plan_manipulation(problem(), planner="rrt_star_mg", goal_cost=wrong)

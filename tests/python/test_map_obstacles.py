@@ -76,6 +76,7 @@ def test_a_map_is_an_obstacle(sdf: mg.ProbabilisticSdf) -> None:
     assert "scan" not in wider
 
 
+@pytest.mark.slow
 def test_unknown_space_is_an_obstacle_when_asked(sdf: mg.ProbabilisticSdf) -> None:
     world = mg.World()
     bounds = [[-0.1, -0.1, -0.1], [0.1, 0.1, 0.3]]
@@ -137,6 +138,7 @@ def test_noise_is_checked_when_made(constant: float) -> None:
         mg.mapping.DepthNoise(constant=constant)
 
 
+@pytest.mark.slow
 def test_an_arm_is_never_free_where_it_touches_what_was_seen(data: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Panda at a table with scanned objects, two noisy cameras; benchmarks/mapping/run_obstacle.py does it at full length."""
     for folder in ("benchmarks/mapping", "benchmarks"):

@@ -128,6 +128,7 @@ def test_real_cloud_files() -> None:
         mg.mapping.read_pcd(CLOUDS / "haf" / "README.txt")
 
 
+@pytest.mark.slow
 def test_graspability_on_a_real_depth_frame_keeps_the_hand_clear() -> None:
     """What stands on the largest level surface of a room: no measured point in a finger, some between the fingers."""
     if not CLOUDS.exists():

@@ -132,6 +132,7 @@ def test_jerk_limits() -> None:
     assert change.max() <= j * (1 + 1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("robot_name", ["panda", "ur5"])
 def test_motion_bench_maker_is_solved_and_verified(
     robot_name: str, data: Path, capsys: pytest.CaptureFixture[str]
@@ -164,8 +165,8 @@ def test_the_bench_refuses_what_is_not_there(tmp_path: Path, capsys: pytest.Capt
         with pytest.raises(SystemExit) as refused:
             main(["bench", "mbm", "--data", str(tmp_path), option, "0"])
         assert refused.value.code == 2
-        told = capsys.readouterr().err
-        assert option in told and "at least 1" in told
+        reported = capsys.readouterr().err
+        assert option in reported and "at least 1" in reported
 
 
 def test_a_start_beyond_limits_is_told_by_joint_value_and_limits(

@@ -24,6 +24,7 @@ def robots(data: Path) -> dict[str, mg.Robot]:
     }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("which", SETS)
 @pytest.mark.parametrize("robot", ["panda", "ur5"])
 def test_starts_and_goals_are_free(robot: str, which: str, robots: dict[str, Any], data: Path) -> None:

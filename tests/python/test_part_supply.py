@@ -18,6 +18,7 @@ def scenario(small_path: Path) -> mg.scenario.Scenario:
     return mg.load_scenario(small_path)
 
 
+@pytest.mark.slow
 def test_planning_does_not_change_the_callers_scenario(scenario: mg.scenario.Scenario) -> None:
     before = copy.deepcopy(scenario.options)
     plan = mg.plan_part_supply(scenario, seed=7, threads=1)
@@ -27,6 +28,7 @@ def test_planning_does_not_change_the_callers_scenario(scenario: mg.scenario.Sce
     assert again.to_dict()["scenario"]["options"]["seed"] == scenario.problem().options["seed"] != 7
 
 
+@pytest.mark.slow
 def test_later_changes_of_the_scenario_do_not_reach_the_plan(scenario: mg.scenario.Scenario) -> None:
     mine = mg.scenario.Scenario(**vars(scenario))
     plan = mg.plan_part_supply(mine)
@@ -38,6 +40,7 @@ def test_later_changes_of_the_scenario_do_not_reach_the_plan(scenario: mg.scenar
         del mine.options["seed"]
 
 
+@pytest.mark.slow
 def test_a_problem_as_objects_gives_the_plan_that_its_scenario_gives(
     scenario: mg.scenario.Scenario, small_plan: mg.part_supply.ScenarioPlan
 ) -> None:

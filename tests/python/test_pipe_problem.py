@@ -282,6 +282,7 @@ def test_a_pose_out_of_reach_is_named(tmp_path: Path) -> None:
 # --- the command -------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_the_command_writes_everything_on_one_clock(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "out"
     assert main(["pipe", str(written(tmp_path, shipped())), "-o", str(out), "--json"]) == 0

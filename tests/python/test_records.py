@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 import types
 import typing
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,6 +14,8 @@ import pytest
 import mmgrasp as mg
 from mmgrasp import _core, _records
 from mmgrasp._files import shipped
+
+ROOT = Path(__file__).resolve().parents[2]
 
 
 def check(value: object, annotation: Any, place: str) -> None:
@@ -110,6 +114,36 @@ def test_planning(robot: mg.Robot) -> None:
     )
     result = mg.plan_manipulation(problem, time_limit=0.2, vertices=50, max_vertices=0)
     check(result.stats, _records.ManipulationStats, "stats")
+
+
+def struct_fields(header: str, struct: str) -> dict[str, str]:
+    """The fields of a struct of a public header, with their types, as they are written there."""
+    text = (ROOT / "cpp/include/mmgrasp" / header).read_text()
+    body = re.search(rf"struct MMGRASP_EXPORT {struct} \{{\n(.*?)\n\}};", text, re.DOTALL)
+    assert body, f"{header} has no {struct}"
+    fields: dict[str, str] = {}
+    for statement in re.sub(r"//.*", "", body[1]).split(";"):
+        if kind := re.match(r"\s*(std::vector<\w+>|std::size_t|double|int)\s+(.*)", statement, re.DOTALL):
+            fields |= {name.split("=")[0].strip(): kind[1] for name in kind[2].split(",")}
+        else:
+            assert not statement.strip(), statement
+    return fields
+
+
+def test_manipulation_stats_are_the_structs() -> None:
+    """A field that is added to the struct is reported in Python too, with its type."""
+    python = {
+        float: {"double"},
+        int: {"std::size_t", "int"},
+        dict[str, _records.StageRow]: {"std::vector<StageReport>"},
+    }
+    keys = typing.get_type_hints(_records.ManipulationStats)
+    fields = struct_fields("plan/manipulation.hpp", "ManipulationStats")
+    assert keys.keys() == fields.keys()
+    for name, kind in fields.items():
+        assert kind in python[keys[name]], name
+    stats = struct_fields("plan/motion.hpp", "MotionStats")
+    assert {name for name in dir(mg.planning.MotionStats) if name[0] != "_"} - {"to_dict"} == stats.keys()
 
 
 def test_platform_locations(robot: mg.Robot) -> None:

@@ -19,8 +19,8 @@ def test_the_page_names_every_stale_result_of_chapter_4() -> None:
     """`./dev reproduce NAME` makes one again; `mmgrasp.reproduce.page.write_page(Path("docs"))` writes the page from what is stored."""
     stale = stale_results(DOCS / "reproduction", REPOSITORY)
     page = (DOCS / "reproduction.md").read_text()
-    told = re.search(rf"^{STALE}: (.*)\.$", page, re.MULTILINE)
-    assert (told.group(1).split(", ") if told else []) == stale
+    reported = re.search(rf"^{STALE}: (.*)\.$", page, re.MULTILINE)
+    assert (reported.group(1).split(", ") if reported else []) == stale
     assert page.count(f"*{STALE}.*") == len(stale)
     assert {name for name in ENTRIES if name.startswith("p1-figure-4.")} <= set(SOURCES)
 

@@ -19,7 +19,7 @@ def integrated(message: MotionMessage) -> tuple[np.ndarray, np.ndarray]:
     """Base poses and joints at the points, from the first one and what the message says of velocities alone.
 
     Twists are linear between points and followed in the platform's own frame in small steps (midpoint rule); joints by the
-    trapezoidal rule, or Simpson's with the cubic's middle where accelerations are told.
+    trapezoidal rule, or Simpson's with the cubic's middle where accelerations are given.
     """
     points = message["points"]
     times = [p["time_from_start"]["sec"] + 1e-9 * p["time_from_start"]["nanosec"] for p in points]
@@ -78,7 +78,7 @@ def test_a_drive_by_integrates_to_its_plan(base: str) -> None:
     (closing,) = motion.gripper
     event = plan.events[0]
     assert closing == {
-        "time": event["close_time"], "duration": event["held_time"] - event["close_time"], "command": "close", "opening": 0.03,
+        "time": event["close_time"], "duration": event["attach_time"] - event["close_time"], "command": "close", "opening": 0.03,
         "object": "part",
     }  # fmt: skip
     assert closing["duration"] >= 0.4
@@ -151,8 +151,8 @@ def test_a_round_is_one_motion(small_plan: mg.part_supply.ScenarioPlan, tmp_path
     assert header.startswith("time,base.x,base.y,base.theta,base.v,base.vy,base.omega,")
     assert header.endswith(",gripper")
     assert len(rows) == len(motion)
-    told = [row.rsplit(",", 1)[1].split() for row in rows]
-    assert sum(len(t) for t in told) == len(motion.gripper)
+    reported = [row.rsplit(",", 1)[1].split() for row in rows]
+    assert sum(len(t) for t in reported) == len(motion.gripper)
     drive = np.genfromtxt(tmp_path / "drive_00.csv", delimiter=",", names=True, deletechars="", usecols=range(7))
     assert drive["time"][-1] == pytest.approx(small_plan.route[0].duration(setup.robot))
 

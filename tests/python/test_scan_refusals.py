@@ -22,7 +22,7 @@ def test_a_wrong_depth_scale_is_said_with_its_key(
     write_sensors(tmp_path / "frames", f"depth_scale: {scale}")
     assert run(tmp_path / "frames", tmp_path / "map") == 3
     out = " ".join(capfd.readouterr().out.split())
-    assert "no frame could be used, 2 looked at" in out and piece in out
+    assert "no frame could be used, 2 examined" in out and piece in out
     assert f"depth_scale of sensor 'camera' ({tmp_path / 'frames' / 'sensors.yaml'}:3) is {scale:g}" in out
     assert not (tmp_path / "map").exists()
 
@@ -49,8 +49,8 @@ def test_nothing_usable_keeps_what_an_earlier_run_wrote(tmp_path: Path, capfd: p
     for path in (tmp_path / "frames").iterdir():
         path.write_bytes(b"")
     assert run(tmp_path / "frames", tmp_path / "map", "--start-over", "--json") == 3
-    told = json.loads(capfd.readouterr().out.split("report:")[-1].split("\n", 1)[-1])
-    assert told["map"] is None and len(told["skipped"]) == 2
+    reported = json.loads(capfd.readouterr().out.split("report:")[-1].split("\n", 1)[-1])
+    assert reported["map"] is None and len(reported["skipped"]) == 2
     assert contents(tmp_path / "map") == before
 
 

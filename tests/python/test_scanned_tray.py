@@ -52,6 +52,7 @@ def truth_at(place: np.ndarray) -> tuple[mg.LinkShape, np.ndarray]:
     return mg.LinkShape(shape), mg.pose([*(FLOOR + [x, y, 0.001 + height / 2])], rpy=[0, 0, yaw])
 
 
+@pytest.mark.slow
 def test_every_part_is_found_where_it_lies(planned: mg.scenario.Scenario) -> None:
     parts = planned.trays[0].tray.parts
     assert [p.name for p in parts] == [f"mixed/object_{k}" for k in range(1, 5)]
@@ -69,6 +70,7 @@ def test_every_part_is_found_where_it_lies(planned: mg.scenario.Scenario) -> Non
         assert solid < volume < 1.35 * solid
 
 
+@pytest.mark.slow
 def test_the_plan_holds_against_map_and_truth(plan: dict[str, Any]) -> None:
     verdict = mg.verify_plan(plan, samples=100)
     assert verdict.ok, verdict.faults
@@ -96,6 +98,7 @@ def spoiled(plan: dict[str, Any], change: Callable[[dict[str, Any]], None]) -> s
     return {fault.code for fault in mg.verify_plan(content, samples=10).faults}
 
 
+@pytest.mark.slow
 def test_tampered_plans_are_refused(plan: dict[str, Any]) -> None:
     def part(content: dict[str, Any], name: str) -> dict[str, Any]:
         found: dict[str, Any] = next(p for p in content["scenario"]["parts"] if p["name"] == name)
@@ -124,6 +127,7 @@ def test_tampered_plans_are_refused(plan: dict[str, Any]) -> None:
     assert spoiled(plan, typed) == {"grasp-probability"}
 
 
+@pytest.mark.slow
 def test_another_map_and_no_map_are_refused(plan: dict[str, Any], tmp_path: Path) -> None:
     file = Path(plan["scenario"]["scans"][0]["map"])
     other = copy.deepcopy(plan)
@@ -135,6 +139,7 @@ def test_another_map_and_no_map_are_refused(plan: dict[str, Any], tmp_path: Path
         mg.verify_plan(other)
 
 
+@pytest.mark.slow
 def test_the_same_frames_give_the_same_scenario(
     planned: mg.scenario.Scenario, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
@@ -152,6 +157,7 @@ def test_the_same_frames_give_the_same_scenario(
     assert load_scenario(SCENARIO).trays[0].scan == now and now.map_file.read_bytes() == content
 
 
+@pytest.mark.slow
 def test_a_folder_of_mmgrasp_scan_and_bad_input(
     planned: mg.scenario.Scenario, write: Callable[..., Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -207,6 +213,7 @@ def test_a_folder_of_mmgrasp_scan_and_bad_input(
         load_scenario(write(both))
 
 
+@pytest.mark.slow
 def test_frames_that_cannot_be_rendered_are_refused(
     write: Callable[..., Path], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
@@ -231,6 +238,7 @@ def test_frames_that_cannot_be_rendered_are_refused(
     assert "set XDG_CACHE_HOME" in refused(seed=7)
 
 
+@pytest.mark.slow
 def test_what_stands_beside_the_parts_is_an_obstacle(planned: mg.scenario.Scenario, tmp_path: Path) -> None:
     """The same map in a scenario that knows nothing of the table's other half: what it shows there becomes a body."""
     assert planned.trays[0].scan is not None
@@ -282,6 +290,7 @@ def test_pieces_are_counted_over_triangles() -> None:
     assert not large_pieces(triangles, kept).any()
 
 
+@pytest.mark.slow
 def test_the_command_plans_and_verifies(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "scanned"
     scenario = str(ASSETS / "scenarios" / "scanned_tray.yaml")

@@ -238,6 +238,7 @@ def test_no_plan_is_explained(
     assert main(["verify", str(tmp_path / "plan.json")]) == 1
 
 
+@pytest.mark.slow
 def test_tray_out_of_reach_is_explained(
     small: dict[str, Any], write: Callable[..., Path], capfd: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:

@@ -64,7 +64,7 @@ def test_rays_find_what_a_fine_walk_finds(sdf: mg.ProbabilisticSdf) -> None:
     expected = np.array([walked(sdf, o, d, r) for o, d, r in zip(origins, directions, reach, strict=True)])
     found = np.where(hits.hit & (hits.distance < reach), hits.distance, np.nan)
     same = (np.isnan(found) & np.isnan(expected)) | (np.abs(found - expected) <= VOXEL / 20)
-    # A walk does not see the last crossing before the unknown; a ray that hardly touches may be told apart differently.
+    # A walk does not see the last crossing before the unknown; a ray that hardly touches may be judged differently.
     beyond = sdf.query(origins + (np.nan_to_num(found) + VOXEL / 4)[:, None] * directions)[2]
     rim = ~np.isnan(found) & np.isnan(expected) & ~beyond
     assert rim.mean() < 0.03

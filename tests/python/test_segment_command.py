@@ -24,6 +24,7 @@ def write_stl(path: Path, scale: float = 1.0, drop: int = 0, turn: bool = False)
     return path
 
 
+@pytest.mark.slow
 def test_segments_of_a_box(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     part = write_stl(tmp_path / "part.stl", scale=1000)
     assert main(["segment", str(part), "--unit", "mm", "-o", str(tmp_path / "out"), "--json"]) == 0
@@ -38,12 +39,14 @@ def test_segments_of_a_box(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -
         assert (tmp_path / "out" / picture).read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.slow
 def test_table_names_widths(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["segment", str(write_stl(tmp_path / "part.stl"))]) == 0
     out = capsys.readouterr().out
     assert "box" in out and "20.00 (100" in out
 
 
+@pytest.mark.slow
 def test_open_mesh_inside_out_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     part = write_stl(tmp_path / "part.stl", drop=1, turn=True)
     assert main(["segment", str(part), "--json"]) == 0

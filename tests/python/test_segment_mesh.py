@@ -60,6 +60,7 @@ def test_widths_of_composed_parts(tmp_path: Path) -> None:
     assert offered >= 8
 
 
+@pytest.mark.slow
 def test_thread_is_found_and_nothing_else_is(tmp_path: Path) -> None:
     part = stepped_shaft(np.random.default_rng((7, 13)), bore=False, fillets=False, threaded=True)
     _, truth, found = segmented(part, 0.0, 0, tmp_path)
@@ -73,6 +74,7 @@ def test_thread_is_found_and_nothing_else_is(tmp_path: Path) -> None:
     assert [s.threaded for s in found.segments].count(True) == 1
 
 
+@pytest.mark.slow
 def test_same_seed_same_segments(tmp_path: Path) -> None:
     part = stepped_shaft(np.random.default_rng((7, 1)), bore=True, fillets=False, threaded=False)
     mesh, _, found = segmented(part, 0.0, 0, tmp_path)
@@ -86,6 +88,7 @@ REAL = {  # segments, and the diameters of the round ones that can be measured o
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", REAL)
 def test_pegs(name: str) -> None:
     path = DATA / name

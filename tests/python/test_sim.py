@@ -278,7 +278,7 @@ def test_the_plan_knows_where_the_bottle_lies_in_the_hand() -> None:
     hand = hand_of.tool_link
     offsets = []
     for state in run.states:
-        if state["time"] < event["held_time"] + 0.2:
+        if state["time"] < event["attach_time"] + 0.2:
             continue
         x, y, theta = state["base"]
         T_world_hand = robot().link_poses(state["joints"], mg.pose([x, y, 0], [0, 0, theta]))[hand]

@@ -40,6 +40,7 @@ def test_random_placements_repeat_and_keep_their_distances() -> None:
     assert apart[~np.eye(60, dtype=bool)].min() >= 0.58
 
 
+@pytest.mark.slow
 def test_what_does_not_fit_is_said() -> None:
     with pytest.raises(mg.Error, match="spacing"):
         storerooms.row(3, 0.0)

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pytest
 
 import mmgrasp as mg
 from argument_values import ARM, OBJECTS, Q
@@ -21,6 +22,7 @@ def without_times(plan: mg.part_supply.ScenarioPlan) -> str:
     return json.dumps(content, sort_keys=True)
 
 
+@pytest.mark.slow
 def test_same_plan_at_one_and_two_threads(small_path: Path) -> None:
     plans = [mg.plan_part_supply(small_path, seed=1, threads=threads) for threads in (1, 2)]
     assert plans[0].outcome == mg.Outcome.solved

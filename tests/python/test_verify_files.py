@@ -70,6 +70,7 @@ def test_values_that_are_no_numbers_are_refused(small_plan_dict: dict[str, Any])
             mg.verify_plan(plan)
 
 
+@pytest.mark.slow
 def test_a_scenario_that_defines_another_problem_is_named(
     small_plan_dict: dict[str, Any], small: dict[str, Any], write: Callable[..., Path]
 ) -> None:

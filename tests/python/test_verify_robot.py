@@ -30,6 +30,7 @@ def joint_text(plan: dict[str, Any], joint: str) -> str:
     return text[start : text.index("</joint>", start)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("tag", "quantity"), [("origin", "its origin"), ("axis", "its axis"), ("limit", "its upper limit")]
 )

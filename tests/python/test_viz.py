@@ -81,9 +81,9 @@ def test_timeline_adds_up_and_knows_where_things_are() -> None:
     assert timeline.state_at(0).base == pytest.approx([0.3, 0.3, 0.0])
     assert timeline.state_at(1e9).base == pytest.approx([2.5, 0.3, 0.0])
     reach_half = timeline.state_at(4.0 + 1.0)
-    assert reach_half.arm == pytest.approx([0.2, 0.25]) and reach_half.held is None
+    assert reach_half.arm == pytest.approx([0.2, 0.25]) and reach_half.attached is None
     lifting = timeline.state_at(4.0 + 3.0 + GRIP_TIME + 0.5)
-    assert lifting.held is not None and lifting.held[0] == "A/brick_0"
+    assert lifting.attached is not None and lifting.attached[0] == "A/brick_0"
     assert timeline.state_at(timeline.duration).removed == {"A/brick_0", "B & C/brick_0"}
     times = timeline.grasp_times()
     assert [row for row, _ in times] == [0, 0] and [time for _, time in times] == pytest.approx([7.0, 15.5])
@@ -168,6 +168,7 @@ def test_report_of_no_plan_names_the_tray_and_the_advice() -> None:
     assert "Tray A, part A/brick_0" in page and "no disc of 0.500 m fits" in page and "0.210 m" in page
 
 
+@pytest.mark.slow
 def test_pictures_show_regions_in_the_tray_colours(tmp_path: Path) -> None:
     from PIL import Image
 

@@ -114,12 +114,12 @@ BAD = {
 
 @pytest.mark.parametrize("name", sorted(BAD))
 def test_errors_name_the_file(name: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
-    inside, told = BAD[name]
+    inside, reported = BAD[name]
     path = tmp_path / "bad.xacro"
     path.write_text(f'<robot name="r" xmlns:xacro="http://ros.org/wiki/xacro">{inside}</robot>')
     with pytest.raises(mg.InvalidInput) as error:
         mg.Robot.load(path)
-    for word in told:
+    for word in reported:
         assert word in str(error.value), str(error.value)
     assert capfd.readouterr() == ("", "")
 

@@ -20,8 +20,8 @@ struct FewestChanges {
 };
 
 /// Branch and bound over sets of grippers: least cost of grippers and changes, then fewest changes. `known` covers
-/// every part; `least_gripper_cost` is proven: no set that does costs less. Depends on the clock and the monitor only
-/// in when it ends early.
+/// every part; `least_gripper_cost` is proven: no set that does costs less. Depends on the time limit and the monitor
+/// only in when it ends early.
 FewestChanges fewest_changes(const std::vector<GripperCandidate>& candidates, int part_count,
                              const std::vector<int>& known, double least_gripper_cost,
                              const MinimalGrippersOptions& options, const Monitor& monitor);

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "mmgrasp/core/detail/numbers.hpp"
 
 namespace mmgrasp::verify::detail {
 namespace {
@@ -27,7 +28,7 @@ double robot_reach(const RobotModel& robot, const std::vector<std::vector<Solid>
     double stroke = 0;
     // A mimic joint's own limits need not hold it: what it follows may drive it farther.
     if (joint.kind == JointKind::prismatic) {
-      stroke = joint.source != static_cast<int>(i) ? std::numeric_limits<double>::infinity()
+      stroke = joint.source != static_cast<int>(i) ? mmgrasp::detail::kInfinity
                                                    : std::max(std::abs(joint.lower), std::abs(joint.upper));
     }
     origin[joint.child] = origin[joint.parent] + joint.T_parent_child.p.Norm() + stroke;

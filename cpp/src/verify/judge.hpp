@@ -72,11 +72,11 @@ class Judge {
   void set_present(std::size_t body, bool present);
   /// The body leaves the scene and moves with the tip from now on.
   void hold(std::size_t body, const Pose& T_tip_body);
-  /// The held body vanishes.
+  /// The attached body vanishes.
   void drop();
 
   Touch touch(const Eigen::VectorXd& arm, double opening);
-  /// How many finger links touch the held body.
+  /// How many finger links touch the attached body.
   int fingers_touching_attached(const Eigen::VectorXd& arm, double opening);
   Pose tip(const Eigen::VectorXd& arm) { return T_world_root_ * kinematics_.tip(arm); }
   std::size_t queries() const { return queries_; }

@@ -448,7 +448,7 @@ class World:
     def allow(self, a: str, b: str) -> None:
         """
         The two may touch: they are not checked against each other. Each is a link of the robot, an SRDF group (all its
-        links) or an object, held or not. The pair may come before its objects; a checker raises InvalidInput for names
+        links) or an object, attached or not. The pair may come before its objects; a checker raises InvalidInput for names
         that robot and world lack. remove() takes the pairs of its object back.
         """
     def attach(self, name: str, link: str, pose: numpy.typing.ArrayLike | None = None, touch_links: collections.abc.Set[str] = set()) -> None:
@@ -461,7 +461,7 @@ class World:
         """
     def detach(self, name: str, pose: numpy.typing.ArrayLike | None = None) -> None:
         """
-        Puts a held object back into the scene at T_world_object; without a pose it leaves the world.
+        Puts an attached object back into the scene at T_world_object; without a pose it leaves the world.
         """
     def disallow(self, a: str, b: str) -> None:
         """
@@ -481,7 +481,7 @@ class World:
         """
     def remove(self, name: str) -> None:
         """
-        Takes an object, held or not, or a field out of the world.
+        Takes an object, attached or not, or a field out of the world.
         """
     def shapes_of(self, name: str) -> list[LinkShape]:
         """
@@ -495,7 +495,7 @@ class World:
     @property
     def attached(self) -> list[str]:
         """
-        Names of the held objects.
+        Names of the attached objects.
         """
     @property
     def fields(self) -> list[str]:
@@ -2010,7 +2010,7 @@ class Hand:
     @property
     def finger_links(self) -> list[str]:
         """
-        Links that may touch the held part.
+        Links that may touch the attached part.
         """
     @property
     def finger_width(self) -> float:
@@ -2535,7 +2535,7 @@ class ManipulationResult:
     @property
     def trees(self) -> list[SearchTree]:
         """
-        With keep_trees: a SearchTree for each grasp still still a candidate and each end.
+        With keep_trees: a SearchTree for each grasp still a candidate and each end.
         """
     @property
     def warnings(self) -> list[str]:
@@ -3676,7 +3676,7 @@ class DriveByResult:
         ...
     def to_csv(self, between: int = 0) -> str:
         """
-        The trajectory's to_csv with two columns more: task, its index in the row of a task's waypoint, and held, the object in the hand.
+        The trajectory's to_csv with two columns more: task, its index in the row of a task's waypoint, and attached, the object in the hand.
         """
     def to_dict(self) -> dict[str, typing.Any]:
         """
@@ -3690,7 +3690,7 @@ class DriveByResult:
     @property
     def events(self) -> list[mmgrasp._records.DriveByEventRow]:
         """
-        One dict per task: waypoint, time and close_time [s], object (what is held then), held_time [s] and T_tip_object, candidate, base_speed and
+        One dict per task: waypoint, time and close_time [s], object (what is held then), attach_time [s] and T_tip_object, candidate, base_speed and
         tool_speed [m/s].
         """
     @property
@@ -6173,7 +6173,7 @@ def find_package(name: str, folder: str | os.PathLike[str], package_dirs: collec
     """
 def finger_length_range(grasp: AssemblyGrasp, operation: AssemblyOperation, *, step: float = 0.0005) -> FingerLengthRange:
     """
-    The finger lengths with which neither fingers nor palm meet the subassemblies: on the approach, along the whole motion, and while the gripper opens and moves back (P1 5.3.2, 5.3.3). The palm and what carries it count as endless. Exact for motions along the approach; others are looked at every `step` [m] with as much margin.
+    The finger lengths with which neither fingers nor palm meet the subassemblies: on the approach, along the whole motion, and while the gripper opens and moves back (P1 5.3.2, 5.3.3). The palm and what carries it count as endless. Exact for motions along the approach; others are checked every `step` [m] with as much margin.
     """
 def fit_cuboids(points: numpy.typing.ArrayLike, *, T_world_tray: numpy.typing.ArrayLike | None = None, tray_size: numpy.typing.ArrayLike | None = None, wall: float = 0.005, up: numpy.typing.ArrayLike | None = None, eye: numpy.typing.ArrayLike | None = None, plane_tolerance: float = 0.008, wall_margin: float = 0.006, up_angle: float = 0.35, max_height: float = 0.5, cluster_tolerance: float = 0.01, leaf: float = 0.003, min_points: int = 60, plane_iterations: int = 1000) -> CuboidFit:
     """

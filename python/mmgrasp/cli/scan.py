@@ -182,7 +182,7 @@ def _print_nothing(scan: Scan, console: Console, as_json: bool) -> None:
     if as_json:
         print(json.dumps({"map": None, "skipped": skipped}, indent=1))
         return
-    console.print(f"no frame could be used, {len(skipped)} looked at", style="bold red", markup=False)
+    console.print(f"no frame could be used, {len(skipped)} examined", style="bold red", markup=False)
     for row in skipped[:_MOST_LINES]:
         console.print(printable(f"- {row['frame']}: {row['reason']}"), markup=False, soft_wrap=True)
     if len(skipped) > _MOST_LINES:

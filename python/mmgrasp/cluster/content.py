@@ -15,7 +15,7 @@ from .._core import InvalidInput, JointGroup, PartSupplyProblem, ReachDatabase
 
 
 class Hasher:
-    """SHA-256 over plain values; equal values of different types are told apart."""
+    """SHA-256 over plain values; equal values of different types are kept apart."""
 
     def __init__(self) -> None:
         self._hash = hashlib.sha256()

@@ -14,7 +14,7 @@ from typing import Any, NoReturn
 import numpy as np
 
 from .._core import InvalidInput, pose
-from .._files import read_text
+from .._files import printable, read_text
 from .yaml_text import Key as Key
 from .yaml_text import bad_yaml as bad_yaml
 from .yaml_text import parse_yaml
@@ -99,7 +99,7 @@ class Node:
     def fail(self, rule: str) -> NoReturn:
         """Raises InvalidInput: place, name, value and the rule that it breaks."""
         shown = _SHORT.repr(self.raw)
-        raise InvalidInput(f"{self.place}: {self.name} = {shown}: {rule}")
+        raise InvalidInput(printable(f"{self.place}: {self.name} = {shown}: {rule}"))
 
     # --- mappings -------------------------------------------------------------------------------------------------
     def mapping(self, required: str = "", optional: str = "") -> Node:

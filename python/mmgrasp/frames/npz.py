@@ -120,7 +120,7 @@ def _intrinsics(array: np.ndarray | None, depth: np.ndarray, what: str) -> Intri
 
 
 def _arrays(data: bytes, what: str) -> dict[str, np.ndarray]:
-    """The known arrays of a file: sizes are looked at before anything is allocated, and no object is ever built from it."""
+    """The known arrays of a file: sizes are checked before anything is allocated, and no object is ever built from it."""
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             out = {}

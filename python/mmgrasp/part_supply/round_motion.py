@@ -57,7 +57,7 @@ class RoundMotion:
                 self._add(RobotMotion(motion.trajectory, base))
 
     def _open_to(self, opening: float, part: str) -> None:
-        """Where the hand stands otherwise; what it stands at when the round begins is told as well, and takes no time."""
+        """Where the hand stands otherwise; what it stands at when the round begins is listed as well, and takes no time."""
         before, self.opening = self.opening, opening
         if self.motion is None or before == opening:
             return

@@ -31,7 +31,7 @@ class PlanVerdict:
     """So many stops are enough for the plan's regions."""
     configurations_checked: int = 0
     allowed_collisions: list[tuple[str, str]] = field(default_factory=list)
-    """Pairs that the plan's scenario lets touch, so that nobody looked at them."""
+    """Pairs that the plan's scenario lets touch, so that nobody checked them."""
     compared_with: str = "the scenario stored in it"
     """The scenario file, or the one stored in the plan when none was given."""
     lower_bound: int = 0

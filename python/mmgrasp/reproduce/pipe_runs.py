@@ -2,7 +2,7 @@
 
 A run is one pipe cell with its own roadmap and its own list of grasps (P2 4.5.1: "each time the grasps and graph are
 regenerated"); a shorter list is the beginning of the longer one. Cells come from three seeds. Times are those of the
-search: building the roadmap and inverse kinematics come before it, as in P2, and are told apart.
+search: building the roadmap and inverse kinematics come before it, as in P2, and are reported by themselves.
 """
 
 from __future__ import annotations

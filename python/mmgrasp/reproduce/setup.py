@@ -161,7 +161,7 @@ def reach_samples(quick: bool) -> int:
 
 
 def describe(row: Row, samples: int, *varied: str) -> dict[str, Any]:
-    """A set-up in words and numbers; `varied` are told by the rows instead."""
+    """A set-up in words and numbers; `varied` are given by the rows instead."""
     words = {
         "robot": "fetchlike, seven-joint arm, diff-drive base",
         "tray [m]": row.tray_size,

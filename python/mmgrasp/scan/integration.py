@@ -239,7 +239,7 @@ def _advised(folder: FrameFolder, frame: Frame, reason: str) -> str:
 
 
 def _compare_sensors(folder: FrameFolder, scan: Scan) -> None:
-    """Takes over intrinsics that the frames of an earlier run told, and refuses sensors that differ from what they were."""
+    """Takes over intrinsics that the frames of an earlier run gave, and refuses sensors that differ from what they were."""
     for name, was in scan.sensors.items():
         sensor = folder.sensors.get(name)
         if sensor is None and not folder.from_file and folder.names_sensors:

@@ -82,7 +82,7 @@ class Controller(Protocol):
 
     @property
     def joints(self) -> Sequence[str]:
-        """Driven joints that it commands; the others keep what they were last told."""
+        """Driven joints that it commands; the others keep their last command."""
 
     @property
     def period(self) -> float:

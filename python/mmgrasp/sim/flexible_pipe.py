@@ -26,7 +26,7 @@ from .model import Physics, build
 from .scene import mujoco_module
 
 ROOT = "pipe"
-_SERVO = 1e7  # armature of the arm's joints: they move as they are told, whatever hangs on them [kg m2 or kg]
+_SERVO = 1e7  # armature of the arm's joints: they move as commanded, whatever hangs on them [kg m2 or kg]
 
 
 @dataclass(frozen=True)
@@ -220,7 +220,7 @@ class FlexiblePipe:
     # --- what it does ---------------------------------------------------------------------------------------------
     @property
     def points(self) -> np.ndarray:
-        """(n, 3) points of the pipe whose displacement is told, in the pipe's frame, not bent [m]."""
+        """(n, 3) points of the pipe whose displacement is reported, in the pipe's frame, not bent [m]."""
         return self._rest.copy()
 
     def _slowest(self) -> float:

@@ -60,11 +60,11 @@ def planned_states(
     parts: Iterable[SimPart] = (),
     *,
     joints: dict[str, float] | None = None,
-    held: tuple[str, float, str] | None = None,
+    attached: tuple[str, float, str] | None = None,
 ) -> list[RecordedState]:
     """States for a Painter from the plan alone, without physics.
 
-    `joints` stand where a trajectory does not move them. `held` = (part, time, link): the part moves with the link from then on.
+    `joints` stand where a trajectory does not move them. `attached` = (part, time, link): the part moves with the link from then on.
     """
 
     def state(time: float) -> RecordedState:
@@ -81,8 +81,8 @@ def planned_states(
         now = state(time)
         for part in parts:
             T = np.asarray(part.pose, float)
-            if held and held[0] == part.name and time > held[1]:
-                T = link_pose(now, held[2]) @ np.linalg.inv(link_pose(state(held[1]), held[2])) @ T
+            if attached and attached[0] == part.name and time > attached[1]:
+                T = link_pose(now, attached[2]) @ np.linalg.inv(link_pose(state(attached[1]), attached[2])) @ T
             now["parts"][part.name] = T
         states.append(now)
     return states

@@ -233,7 +233,7 @@ def write_scene(plan: dict[str, Any], path: str | Path, time: float | None = Non
 
 
 def write_pick_curves(plan: dict[str, Any], index: int, path: Path) -> Path:
-    """Joint positions of one pick over time, its motions told apart."""
+    """Joint positions of one pick over time, its motions marked."""
     pick = plan["picks"][index]
     figure = _pyplot()(9, 4.6)
     axes = figure.add_subplot()

@@ -58,8 +58,8 @@ class PlanScene:
 
     def part_pose(self, name: str, state: State, links: dict[str, np.ndarray]) -> np.ndarray | None:
         """T_world_part, or None when the part lies in the bin."""
-        if state.held and state.held[0] == name:
-            return np.asarray(links[self.plan["scenario"]["gripper"]["tool_link"]] @ state.held[1])
+        if state.attached and state.attached[0] == name:
+            return np.asarray(links[self.plan["scenario"]["gripper"]["tool_link"]] @ state.attached[1])
         return None if name in state.removed else self.bodies.parts[name].pose
 
     def at(self, state: State, floor: bool = True) -> Scene:

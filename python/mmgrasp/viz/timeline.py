@@ -19,7 +19,7 @@ class State:
     base: np.ndarray  # x, y, theta
     arm: np.ndarray  # configuration of the arm's joints
     opening: float  # of the fingers [m]
-    held: tuple[str, np.ndarray] | None = None  # part name and T_hand_part
+    attached: tuple[str, np.ndarray] | None = None  # part name and T_hand_part
     removed: frozenset[str] = frozenset()  # parts in the bin
 
 
@@ -32,7 +32,7 @@ class Segment:
     duration: float
     kind: str  # "drive", "motion", "grip" or "drive-by"
     data: Any
-    held: tuple[str, np.ndarray] | None = None
+    attached: tuple[str, np.ndarray] | None = None
     removed: frozenset[str] = frozenset()
     base: np.ndarray = field(default_factory=lambda: np.zeros(3))
     opening: float = 0.0
@@ -93,16 +93,16 @@ class Timeline:
             clock = self._add(leaving)
             motions = [m for m in motions if m["kind"] in ("transfer", "retreat")]
         for motion in motions:
-            held = in_hand if motion["holding"] else None
+            attached = in_hand if motion["holding"] else None
             binned = removed | {name} if motion["kind"] == "retreat" else removed
             label = f"{motion['kind']} {name}"
-            segment = Segment(label, clock, float(motion["times"][-1]), "motion", motion, held, binned, base)
+            segment = Segment(label, clock, float(motion["times"][-1]), "motion", motion, attached, binned, base)
             segment.opening = float(motion["opening"])
             clock = self._add(segment)
             if motion["kind"] in ("approach", "transfer"):
                 word = "grasp" if motion["kind"] == "approach" else "release"
                 grip = Segment(f"{word} {name}", clock, GRIP_TIME, "grip", motion, None, removed, base)
-                grip.held = in_hand if word == "release" else None
+                grip.attached = in_hand if word == "release" else None
                 grip.opening = float(motion["opening"])
                 clock = self._add(grip)
         return clock
@@ -128,13 +128,13 @@ class Timeline:
             when = segment.after + local
             row = [np.interp(when, motion["times"], column) for column in np.transpose(motion["positions"])]
             opening = np.interp(when, [motion["close_at"], motion["closed_at"]], [motion["opening"], width])
-            return State(np.array(row[:3]), np.array(row[3:]), float(opening), segment.held, segment.removed)
+            return State(np.array(row[:3]), np.array(row[3:]), float(opening), segment.attached, segment.removed)
         motion = segment.data
         times = np.asarray(motion["times"], float)
         positions = np.asarray(motion["positions"], float)
         when = local if segment.kind == "motion" else times[-1]
         arm = np.array([np.interp(when, times, positions[:, j]) for j in range(positions.shape[1])])
-        return State(segment.base, arm, segment.opening, segment.held, segment.removed)
+        return State(segment.base, arm, segment.opening, segment.attached, segment.removed)
 
     def grasp_times(self) -> list[tuple[int, float]]:
         """(stop index, time at which the part is reached), one for each pick."""

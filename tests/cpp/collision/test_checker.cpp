@@ -72,7 +72,7 @@ TEST(Checker, ClosedMeshesAreSolids) {
     CollisionChecker inside = make_checker(body, big, shifted(0, 0, 0));
     EXPECT_EQ(inside.rejection(at(0.3, 0.2, -0.5)), Rejection::scene) << shape_kind(body);
     EXPECT_EQ(inside.rejection(at(0.3, 0.2, 5)), Rejection::none) << shape_kind(body);
-    EXPECT_EQ(inside.rejection(at(0, 0, 0.9)), Rejection::none) << "in the dent, " << shape_kind(body);
+    EXPECT_EQ(inside.rejection(at(0, 0, 0.9)), Rejection::none) << "in the concavity, " << shape_kind(body);
     // And the other way round: the robot's link is the big one.
     CollisionChecker around = make_checker(big, body, shifted(0, 0, 0));
     EXPECT_EQ(around.rejection(at(-0.3, -0.2, 0.5)), Rejection::scene) << shape_kind(body);

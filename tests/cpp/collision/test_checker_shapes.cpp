@@ -174,7 +174,7 @@ TEST_P(CheckerShapesOnKernels, EveryPairAgreesWithFcl) {
   const int samples = 250;
   int free = 0, hit = 0, unjudged = 0;
   for (const Case& mover : all_shapes()) {
-    // A link cannot be made of voxels, a attached object can.
+    // A link cannot be made of voxels, an attached object can.
     const bool attached = mover.name == "voxels";
     const JointGroup group = free_body::group(attached ? std::vector<LinkShape>{}
                                                        : std::vector<LinkShape>{free_body::link_shape(mover.shape)});

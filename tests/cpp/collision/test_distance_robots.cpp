@@ -80,7 +80,7 @@ Tally tally_of(const MeshArm& arm) {
     options.check_scene = !self;
     expect_gradients(arm, options, 60, tally);
   }
-  std::printf("%s: gradients of %d scene pairs, %d self pairs, %d of a held part, %d in overlap; %d kinks\n",
+  std::printf("%s: gradients of %d scene pairs, %d self pairs, %d of an attached part, %d in overlap; %d kinks\n",
               arm.name.c_str(), tally.scene, tally.self, tally.attached, tally.overlapping, tally.kinks);
   EXPECT_GT(tally.scene, 30);
   EXPECT_GT(tally.self, 30);

@@ -273,12 +273,18 @@ struct TwoLevels {
   CoverView views[2];
 };
 
-/// What spheres of a cover may be told: `least` is the smallest clearance of their outer spheres, those above
-/// `surely_apart` must be told apart; `overlap_possible`: an inner sphere meets the body.
+/// What spheres of a cover may be found: `least` is the smallest clearance of their outer spheres, those above
+/// `surely_apart` must be proven separate; `overlap_possible`: an inner sphere meets the body.
 void expect_never_sure_and_wrong(CoverAnswer answer, double least, double surely_apart, bool overlap_possible) {
-  if (least < 0) EXPECT_NE(answer, kApart);
-  if (least > surely_apart) EXPECT_EQ(answer, kApart);
-  if (!overlap_possible) EXPECT_NE(answer, kOverlap);
+  if (least < 0) {
+    EXPECT_NE(answer, kApart);
+  }
+  if (least > surely_apart) {
+    EXPECT_EQ(answer, kApart);
+  }
+  if (!overlap_possible) {
+    EXPECT_NE(answer, kOverlap);
+  }
 }
 
 /// The grid of a sphere of radius 0.2 about the origin. Each cell holds the distance of its centre, or a lower bound of

@@ -52,7 +52,9 @@ TEST(Narrow, SaysWhetherTheClearanceExceedsABound) {
         EXPECT_EQ(within, share > 1) << "distance " << distance << ", asked for " << clearance;
         Closing closing;
         closing.most = clearance;
-        if (other == b.get()) EXPECT_EQ(meshes_collide(*b, T_b, grid, *a, T_a, closing), within) << distance;
+        if (other == b.get()) {
+          EXPECT_EQ(meshes_collide(*b, T_b, grid, *a, T_a, closing), within) << distance;
+        }
         ++(within ? narrower : wider);
       }
     }

@@ -125,7 +125,7 @@ TEST(Padding, BodiesThatJustTouchAndNamesThatOverride) {
   EXPECT_THROW(world.set_padding(named), InvalidInput);
 }
 
-/// Held things are grown against the scene, and neither they nor links against each other.
+/// Attached things are grown against the scene, and neither they nor links against each other.
 TEST(Padding, OfWhatIsHeldActsAgainstTheSceneOnly) {
   const Robot robot = Robot::from_strings(R"(<robot name="r">
     <link name="base"><collision><geometry><box size="1 1 0.2"/></geometry></collision></link>

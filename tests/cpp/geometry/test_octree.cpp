@@ -109,9 +109,9 @@ TEST(Octree, EveryTruncationIsRefused) {
 }
 
 TEST(Octree, RefusesNamingTheFault) {
-  const auto expect = [](const std::string& content, const std::string& told) {
+  const auto expect = [](const std::string& content, const std::string& reported) {
     const std::string message = refusal(content);
-    EXPECT_NE(message.find(told), std::string::npos) << message;
+    EXPECT_NE(message.find(reported), std::string::npos) << message;
   };
   const std::string good = "id OcTree\nsize 2\nres 0.1\n", leaf("\x02\x00", 2);
   expect("", "is empty");

@@ -67,7 +67,9 @@ TEST(ShapeDiameter, CylinderIsItsDiameter) {
   const auto mesh = shape_mesh(Cylinder{0.005, 0.2}, 128);
   const std::vector<double> found = shape_diameters(*mesh);
   for (std::size_t f = 0; f < found.size(); ++f) {
-    if (centre(*mesh, f).head<2>().norm() > 0.0049) EXPECT_NEAR(found[f], 0.01, 0.01 * 0.002);
+    if (centre(*mesh, f).head<2>().norm() > 0.0049) {
+      EXPECT_NEAR(found[f], 0.01, 0.01 * 0.002);
+    }
   }
 }
 
@@ -77,7 +79,9 @@ TEST(ShapeDiameter, TubeIsItsWall) {
   const std::vector<double> found = shape_diameters(*mesh);
   for (std::size_t f = 0; f < found.size(); ++f) {
     const double z = centre(*mesh, f).z();
-    if (z > 0.02 && z < 0.08) EXPECT_NEAR(found[f], 0.003, 0.003 * 0.02) << f;
+    if (z > 0.02 && z < 0.08) {
+      EXPECT_NEAR(found[f], 0.003, 0.003 * 0.02) << f;
+    }
   }
 }
 
@@ -92,7 +96,9 @@ TEST(ShapeDiameter, RayLengthsHaveTheirOwnClosedForms) {
   const auto mesh = shape_mesh(Box{{2, 2, 0.002}});
   const std::vector<double> found = shape_diameters(*mesh, options);
   for (std::size_t f = 0; f < found.size(); ++f) {
-    if (std::abs(std::abs(centre(*mesh, f).z()) - 0.001) < 1e-12) EXPECT_NEAR(found[f], 0.002 * plate, 1e-6);
+    if (std::abs(std::abs(centre(*mesh, f).z()) - 0.001) < 1e-12) {
+      EXPECT_NEAR(found[f], 0.002 * plate, 1e-6);
+    }
   }
 }
 

@@ -49,7 +49,9 @@ TEST(Gripper, CentricFingersStayInTheirSectors) {
       EXPECT_LE(v.x(), g.finger_thickness + 1e-12);
       widest = std::max(widest, std::abs(v.y()));
     }
-    if (low > 0.0141) EXPECT_DOUBLE_EQ(widest, g.finger_width / 2);
+    if (low > 0.0141) {
+      EXPECT_DOUBLE_EQ(widest, g.finger_width / 2);
+    }
   }
 }
 
@@ -76,7 +78,9 @@ TEST(Gripper, LoadedGripperOpensAsPromised) {
     const Robot robot = Robot::load(folder(g.name) + "/gripper.urdf", folder(g.name) + "/gripper.srdf");
     const double stroke = (g.max_opening - g.min_opening) / 2;
     EXPECT_NEAR(2 * free_radius(robot, g, stroke), g.max_opening, 2e-6) << g.fingers;
-    if (g.min_opening > 0) EXPECT_NEAR(2 * free_radius(robot, g, 0), g.min_opening, 2e-6) << g.fingers;
+    if (g.min_opening > 0) {
+      EXPECT_NEAR(2 * free_radius(robot, g, 0), g.min_opening, 2e-6) << g.fingers;
+    }
   }
 }
 

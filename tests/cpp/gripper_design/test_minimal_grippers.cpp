@@ -163,7 +163,9 @@ TEST(MinimalGrippers, FingerLengthsFollowFromWhatIsTaken) {
   const auto requirements = figure_5_13(1.0);
   const MinimalGrippersResult r = minimal_grippers(requirements, kAirChucks);
   for (std::size_t p = 0; p < r.parts.size(); ++p) {
-    if (r.parts[p] == "13") EXPECT_GE(r.grippers[r.gripper_of_part[p]].finger_length, 0.0227);
+    if (r.parts[p] == "13") {
+      EXPECT_GE(r.grippers[r.gripper_of_part[p]].finger_length, 0.0227);
+    }
   }
 }
 

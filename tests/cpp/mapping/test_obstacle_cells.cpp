@@ -95,7 +95,7 @@ TEST(ObstacleCells, HoldWhatAnyPixelSaw) {
   }
 }
 
-/// With noise of half a voxel, and errors of the poses that the frames were told of: at 2 sigma nothing seen is free,
+/// With noise of half a voxel, and errors of the poses that the frames were given: at 2 sigma nothing seen is free,
 /// but for what a pose's error moves sideways at a rim. Without the margin much is.
 TEST(ObstacleCells, TwoSigmaHoldWhatNoisyFramesSaw) {
   const auto scenes = primitive_scenes();
@@ -125,7 +125,9 @@ TEST(ObstacleCells, TwoSigmaHoldWhatNoisyFramesSaw) {
     std::printf("%s: of %d seen points %d outside at 0 sigma, %d at 2\n", poses ? "with pose errors" : "noise alone",
                 count, at_zero, at_two);
     EXPECT_GT(count, 100000);
-    if (poses) EXPECT_GT(at_zero, 300);
+    if (poses) {
+      EXPECT_GT(at_zero, 300);
+    }
     EXPECT_LE(at_two, poses ? count / 10000 : 0);
   }
 }

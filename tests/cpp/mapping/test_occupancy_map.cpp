@@ -200,8 +200,8 @@ TEST(OccupancyMap, FilesGoBothWaysAndOctoMapReadsThem) {
 }
 
 TEST(OccupancyMap, RefusesBadInput) {
-  const auto expect = [](const std::string& told, const std::string& part) {
-    EXPECT_NE(told.find(part), std::string::npos) << told;
+  const auto expect = [](const std::string& reported, const std::string& part) {
+    EXPECT_NE(reported.find(part), std::string::npos) << reported;
   };
   expect(message([] { OccupancyMap(coarse(0)); }), "resolution");
   OccupancyOptions odd;

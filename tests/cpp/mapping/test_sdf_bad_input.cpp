@@ -39,7 +39,7 @@ void write(const std::string& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
 }
 
-/// A corner of a room: enough shape for poses to be told apart.
+/// A corner of a room: enough shape for poses to be distinguished.
 std::vector<PlacedShape> room() {
   return {{Box{{0.6, 0.6, 0.02}}, Pose(Eigen::Translation3d(0, 0, -0.01))},
           {Box{{0.10, 0.06, 0.08}}, Pose(Eigen::Translation3d(0.02, 0.03, 0.04))},
@@ -144,7 +144,9 @@ TEST_F(BadFrame, PosesTheWrongWayRound) {
   for (const Pose& pose : poses) {
     const IntegrationReport report = right.integrate(frame_of(room(), camera_, pose), camera_);
     EXPECT_EQ(report.warning, "");
-    if (right.frames() > 1) EXPECT_GT(report.agreement, 0.7);
+    if (right.frames() > 1) {
+      EXPECT_GT(report.agreement, 0.7);
+    }
   }
   // A pose that fits neither way is integrated with a warning.
   DepthImage off = frame_of(room(), camera_, poses[0]);
@@ -246,7 +248,9 @@ TEST_F(BadFrame, FilesThatAreNoMap) {
   const SdfValues a = sdf.query(points), b = again.query(points);
   EXPECT_EQ(a.known, b.known);
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    if (a.known[i]) EXPECT_EQ(a.mean[i], b.mean[i]);
+    if (a.known[i]) {
+      EXPECT_EQ(a.mean[i], b.mean[i]);
+    }
   }
 
   const auto refused = [&](const std::string& content) {

@@ -92,7 +92,7 @@ TEST(SetCover, EqualsBruteForceOnRandomInstances) {
 }
 
 /// Beyond what trying all subsets allows: the same covers by a plain branching over elements, without any bound but the
-/// best cover's cost. Two or three components, so that they are told apart.
+/// best cover's cost. Two or three components, so that they are distinguished.
 double by_branching(const SetCoverProblem& problem) {
   double best = std::numeric_limits<double>::infinity();
   std::vector<int> times(problem.elements, 0);

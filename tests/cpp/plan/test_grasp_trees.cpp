@@ -80,12 +80,16 @@ TEST(GraspTrees, InvariantsHoldThroughGrowingRewiringAndPruning) {
           EXPECT_FALSE(trees.vertex(v).alive);
         }
       }
-      if (round % 50 == 0) EXPECT_NO_THROW(trees.check_invariants());
+      if (round % 50 == 0) {
+        EXPECT_NO_THROW(trees.check_invariants());
+      }
     }
     EXPECT_NO_THROW(trees.check_invariants());
     EXPECT_GT(removed, 100);
     EXPECT_GT(copied, 100);
-    if (grasps == 2) EXPECT_GT(rewired, 100);
+    if (grasps == 2) {
+      EXPECT_GT(rewired, 100);
+    }
   }
 }
 

@@ -256,7 +256,9 @@ TEST(InformedUnion, DrawsAroundAGraspStayNearItsLine) {
       // The longest straight line of any pair is twice the root of eight; what leaves the box is set back to its
       // border.
       EXPECT_LT(ends.estimate(grasp, q.data()) - ends.cost(grasp), 1.3 * std::sqrt(32.0) + 0.11);
-      if (grasp == 0) EXPECT_LT(2 * (q - Vector2d(1.5, 1.2)).norm(), 0.1 + 1e-9);
+      if (grasp == 0) {
+        EXPECT_LT(2 * (q - Vector2d(1.5, 1.2)).norm(), 0.1 + 1e-9);
+      }
     }
 }
 

@@ -28,16 +28,16 @@ TEST(PlanMotionVia, PassesThemInTurn) {
   CollisionChecker checker(arm.group(), test::make_world({{{0.9, 0, 0}, {0.1, 0.3, 0.1}}}));
   const VectorXd start = vec({-0.8, 0, 0}), goal = vec({0.8, 0, 0});
   const std::vector<VectorXd> via{vec({-1.5, 1, 1}), vec({0.2, 2, 2})};
-  int told = 0;
+  int reported = 0;
   MotionOptions options;
   options.on_improvement = [&](const Improvement& whole) {
-    ++told;
+    ++reported;
     EXPECT_EQ(whole.path.waypoints.back(), goal);
   };
   const MotionResult result = plan_motion_via(checker, start, via, to(goal), options);
   ASSERT_EQ(result.outcome, Outcome::solved);
   EXPECT_EQ(result.via_reached, 2);
-  EXPECT_EQ(told, 1);
+  EXPECT_EQ(reported, 1);
   const std::vector<VectorXd>& path = result.path->waypoints;
   EXPECT_EQ(path.front(), start);
   EXPECT_EQ(path.back(), goal);

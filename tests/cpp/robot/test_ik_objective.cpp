@@ -253,7 +253,7 @@ TEST(IkObjective, WeightsSayWhichJointsMove) {
     for (Eigen::Index j = 0; j < q.size(); ++j) q[j] += rng.uniform(-0.02, 0.02);
     const Eigen::VectorXd start = q;
     if (group.jacobian(goal).rightCols<4>().norm() == 0) continue;
-    // Joint 3 is so dear that it rests where the other six can do without it.
+    // Joint 3 is so costly that it rests where the other six can do without it.
     if (group.manipulability(goal) < 0.03) continue;
     if (!refine_ik(group, group.fk(goal), q, heavy, workspace)) continue;
     Eigen::MatrixXd others(6, 6);

@@ -13,7 +13,7 @@ namespace {
 struct BadCase {
   const char* what;
   std::string urdf;
-  std::vector<std::string> told;  ///< Every one must stand in the message.
+  std::vector<std::string> reported;  ///< Every one must stand in the message.
 };
 
 std::string robot(const std::string& inside) {
@@ -149,7 +149,7 @@ TEST(RobotBadInput, EachIsRefusedWithFilePlaceValueAndRule) {
     }
     ASSERT_NE(message, "") << bad.what << " was accepted";
     EXPECT_NE(message.find("bad.urdf"), std::string::npos) << bad.what << ": " << message;
-    for (const std::string& part : bad.told)
+    for (const std::string& part : bad.reported)
       EXPECT_NE(message.find(part), std::string::npos) << bad.what << ": " << message;
   }
 }

@@ -123,7 +123,7 @@ TEST(Srdf, PassiveJointsAreInNoGroup) {
   options.load_meshes = false;
   const Robot robot = Robot::load(shared(kTiago + "tiago.urdf"),
                                   shared("robots/tiago/tiago_moveit_config/config/srdf/tiago_pal-hey5.srdf"), options);
-  // 35 in the file; tiago.urdf holds all but those it lacks, which are told.
+  // 35 in the file; tiago.urdf holds all but those it lacks, which are reported.
   const std::set<std::string> passive(robot.passive_joints().begin(), robot.passive_joints().end());
   int lacking = 0;
   for (const std::string& warning : robot.report().warnings)

@@ -43,7 +43,9 @@ TEST(LinearForm, EnclosesEveryOperation) {
     holds(detail::sine(a), std::sin(va), "sine");
     holds(detail::cosine(a), std::cos(va), "cosine");
     if (vp > 0) holds(detail::square_root(positive), std::sqrt(vp), "root");
-    if (positive.low() > 0) EXPECT_GT(detail::square_root(positive).low(), 0);
+    if (positive.low() > 0) {
+      EXPECT_GT(detail::square_root(positive).low(), 0);
+    }
     if (positive.low() > 0) holds(detail::reciprocal(positive), 1 / vp, "reciprocal");
     if (std::abs(vc) <= 1) holds(detail::arc_cosine(cosine), std::acos(vc), "arc cosine");
     const LinearForm angle = detail::angle_of(a, b);
@@ -166,7 +168,9 @@ TEST(SagBound, StaysBelowAndComesNear) {
         double sum = 0;
         for (const Vector3d& g : gravity) sum += held.largest_displacement(g).value;
         EXPECT_LE(below.centre + below.slope[0] * x - below.error, sum);
-        if (half < 1e-4 * length) EXPECT_GE(below.centre + below.slope[0] * x - below.error, 0.97 * sum);
+        if (half < 1e-4 * length) {
+          EXPECT_GE(below.centre + below.slope[0] * x - below.error, 0.97 * sum);
+        }
       }
     }
   }

@@ -92,10 +92,14 @@ TEST(Pipe, ShapesHoldWhatIsWithinARadiusOfTheCentreLines) {
       const double t = std::clamp((point - a).dot(d) / d.squaredNorm(), 0.0, 1.0);
       gap = std::min(gap, (point - a - t * d).norm() - pipe.diameters[s] / 2);
     }
-    if (std::abs(gap) > 1e-12) EXPECT_EQ(inside(round, point), gap < 0);
+    if (std::abs(gap) > 1e-12) {
+      EXPECT_EQ(inside(round, point), gap < 0);
+    }
     in += gap < 0;
     const bool in_flat = inside(flat, point);
-    if (in_flat) EXPECT_TRUE(gap < 1e-12) << "flat ends lie within round ones";
+    if (in_flat) {
+      EXPECT_TRUE(gap < 1e-12) << "flat ends lie within round ones";
+    }
     between += gap < 0 && !in_flat;
   }
   EXPECT_GT(in, 200);

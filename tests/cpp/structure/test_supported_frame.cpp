@@ -214,7 +214,9 @@ TEST(SupportedFrame, LargestDisplacementMissesNothing) {
     EXPECT_NEAR(held.displacement(gravity, found.member, found.distance).norm(), found.value, 1e-12);
     const double at_nodes = held.state(gravity).nodes.topRows<3>().colwise().norm().maxCoeff();
     EXPECT_GE(found.value, at_nodes * (1 - 1e-9));
-    if (all_nodes) EXPECT_EQ(at_nodes, 0);
+    if (all_nodes) {
+      EXPECT_EQ(at_nodes, 0);
+    }
   }
 }
 

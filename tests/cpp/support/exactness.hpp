@@ -171,7 +171,7 @@ inline std::vector<Eigen::Vector3d> one_of_each_part(const TriangleMesh& mesh) {
   return out;
 }
 
-/// FCL's answer for a group in a world without held objects. Its objects are made once: FCL goes over all triangles
+/// FCL's answer for a group in a world without attached objects. Its objects are made once: FCL goes over all triangles
 /// whenever one is made.
 class Reference {
  public:

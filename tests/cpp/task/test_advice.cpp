@@ -99,21 +99,21 @@ PartSupplyProblem seeded_failure(int number) {
 /// Does what the obstructions say, and nothing else.
 PartSupplyProblem with_advice_applied(PartSupplyProblem problem, const std::vector<Obstruction>& obstructions) {
   std::set<std::string> moved;
-  for (const Obstruction& told : obstructions) {
-    if (told.needed_opening > 0) set_opening(problem, told.needed_opening);
-    if (told.largest_uncertainty > 0) {
+  for (const Obstruction& reported : obstructions) {
+    if (reported.needed_opening > 0) set_opening(problem, reported.needed_opening);
+    if (reported.largest_uncertainty > 0) {
       problem.options.positioning_uncertainty =
-          std::min(problem.options.positioning_uncertainty, told.largest_uncertainty);
+          std::min(problem.options.positioning_uncertainty, reported.largest_uncertainty);
     }
-    if (told.move_trays.empty() || moved.count(told.tray)) continue;
-    const Eigen::Vector3d by(told.advised_move.x(), told.advised_move.y(), 0);
-    for (const std::string& name : told.move_objects) {
+    if (reported.move_trays.empty() || moved.count(reported.tray)) continue;
+    const Eigen::Vector3d by(reported.advised_move.x(), reported.advised_move.y(), 0);
+    for (const std::string& name : reported.move_objects) {
       Pose T = problem.scene.objects().at(name).T_world_object;
       T.translation() += by;
       problem.scene.move(name, T);
     }
     for (Tray& tray : problem.trays) {
-      if (std::count(told.move_trays.begin(), told.move_trays.end(), tray.name) == 0) continue;
+      if (std::count(reported.move_trays.begin(), reported.move_trays.end(), tray.name) == 0) continue;
       moved.insert(tray.name);
       tray.T_world_tray.translation() += by;
       for (Part& part : tray.parts) part.T_world_part.translation() += by;
@@ -128,19 +128,19 @@ std::string all_messages(const PartSupplyPlan& plan) {
   return text;
 }
 
-void expect_advice_of_its_kind(Kind kind, const Obstruction& told) {
+void expect_advice_of_its_kind(Kind kind, const Obstruction& reported) {
   if (kind == Kind::uncertainty) {
-    EXPECT_EQ(told.stage, "robustness");
-    EXPECT_GT(told.largest_uncertainty, 0);
+    EXPECT_EQ(reported.stage, "robustness");
+    EXPECT_GT(reported.largest_uncertainty, 0);
   } else if (kind == Kind::wide) {
-    EXPECT_EQ(told.stage, "grasp");
-    EXPECT_EQ(told.tray, "B");
-    EXPECT_GT(told.needed_opening, 0.04);
+    EXPECT_EQ(reported.stage, "grasp");
+    EXPECT_EQ(reported.tray, "B");
+    EXPECT_GT(reported.needed_opening, 0.04);
   } else {
-    EXPECT_GT(told.advised_move.norm(), 0) << told.message;
-    ASSERT_FALSE(told.move_trays.empty()) << told.message;
-    EXPECT_EQ(told.move_trays[0], told.tray);
-    EXPECT_EQ(told.move_objects, std::vector<std::string>{"table"});
+    EXPECT_GT(reported.advised_move.norm(), 0) << reported.message;
+    ASSERT_FALSE(reported.move_trays.empty()) << reported.message;
+    EXPECT_EQ(reported.move_trays[0], reported.tray);
+    EXPECT_EQ(reported.move_objects, std::vector<std::string>{"table"});
   }
 }
 
@@ -155,10 +155,10 @@ TEST(Advice, AppliedItSolvesNineOfTenSeededFailures) {
     const bool proven = kind_of(number) == Kind::wide;
     ASSERT_EQ(failed.outcome, proven ? Outcome::infeasible : Outcome::not_found);
     ASSERT_FALSE(failed.obstructions.empty());
-    for (const Obstruction& told : failed.obstructions) {
-      EXPECT_FALSE(told.tray.empty());
-      EXPECT_FALSE(told.part.empty());
-      expect_advice_of_its_kind(kind_of(number), told);
+    for (const Obstruction& reported : failed.obstructions) {
+      EXPECT_FALSE(reported.tray.empty());
+      EXPECT_FALSE(reported.part.empty());
+      expect_advice_of_its_kind(kind_of(number), reported);
     }
     const PartSupplyPlan fixed = plan_part_supply(with_advice_applied(problem, failed.obstructions), database());
     solved += fixed.outcome == Outcome::solved;
@@ -176,10 +176,10 @@ TEST(Advice, HalfTheMoveIsNotEnough) {
   const PartSupplyProblem problem = seeded_failure(1);
   PartSupplyPlan failed = plan_part_supply(problem, database());
   ASSERT_FALSE(failed.obstructions.empty());
-  for (Obstruction& told : failed.obstructions) {
-    ASSERT_GT(told.advised_move.norm(), 2 * problem.options.grid.resolution);
-    EXPECT_GE(told.advised_move.norm(), told.reach_deficit - problem.options.grid.resolution);
-    told.advised_move *= 0.5;
+  for (Obstruction& reported : failed.obstructions) {
+    ASSERT_GT(reported.advised_move.norm(), 2 * problem.options.grid.resolution);
+    EXPECT_GE(reported.advised_move.norm(), reported.reach_deficit - problem.options.grid.resolution);
+    reported.advised_move *= 0.5;
   }
   EXPECT_EQ(plan_part_supply(with_advice_applied(problem, failed.obstructions), database()).outcome,
             Outcome::not_found);
@@ -219,13 +219,13 @@ TEST(Advice, CountersOfAFailedPlanAreWhatTheEvaluatorRecounts) {
     pose.head<2>().array() -= 0.5 * grid.resolution;
     look(pose);
   }
-  const PartExplanation& told = failed.regions[0].explanations[0];
-  EXPECT_GT(told.base_poses_tried, 0u);
+  const PartExplanation& reported = failed.regions[0].explanations[0];
+  EXPECT_GT(reported.base_poses_tried, 0u);
   EXPECT_GT(failed.regions[0].base_poses_in_collision, 0u);
-  EXPECT_EQ(told.base_poses_tried, recount.base_poses_tried);
-  EXPECT_EQ(told.base_poses_feasible, recount.base_poses_feasible);
-  EXPECT_EQ(told.rejections, recount.rejections)
-      << told.rejections.summary() << " against " << recount.rejections.summary();
+  EXPECT_EQ(reported.base_poses_tried, recount.base_poses_tried);
+  EXPECT_EQ(reported.base_poses_feasible, recount.base_poses_feasible);
+  EXPECT_EQ(reported.rejections, recount.rejections)
+      << reported.rejections.summary() << " against " << recount.rejections.summary();
   EXPECT_EQ(failed.regions[0].base_poses_in_collision, in_collision);
 }
 

@@ -65,13 +65,13 @@ TEST_F(BaseRegions, CountersEqualABruteForceRecount) {
         }
       }
       const BaseRegion& region = (*regions_)[tray];
-      const PartExplanation& told = region.explanations[part];
-      EXPECT_EQ(told.grasps, 12);
-      EXPECT_EQ(told.base_poses_tried, recount.base_poses_tried);
-      EXPECT_EQ(told.base_poses_feasible, recount.base_poses_feasible);
-      EXPECT_EQ(told.rejections, recount.rejections)
-          << told.rejections.summary() << " against " << recount.rejections.summary();
-      EXPECT_EQ(told.rejections.total(), 12 * (told.base_poses_tried - told.base_poses_feasible));
+      const PartExplanation& reported = region.explanations[part];
+      EXPECT_EQ(reported.grasps, 12);
+      EXPECT_EQ(reported.base_poses_tried, recount.base_poses_tried);
+      EXPECT_EQ(reported.base_poses_feasible, recount.base_poses_feasible);
+      EXPECT_EQ(reported.rejections, recount.rejections)
+          << reported.rejections.summary() << " against " << recount.rejections.summary();
+      EXPECT_EQ(reported.rejections.total(), 12 * (reported.base_poses_tried - reported.base_poses_feasible));
       EXPECT_EQ(region.base_poses_in_collision, at_home);
       for (int iy = 0; iy < grid_->ny; ++iy) {
         for (int ix = 0; ix < grid_->nx; ++ix) {

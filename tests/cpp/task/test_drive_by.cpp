@@ -246,7 +246,7 @@ TEST(DriveBy, NeverGoesThroughThePartItTakes) {
     ++solved;
     expect_sound(r, {task});
     const WholeBodyTrajectory& t = *r.trajectory;
-    const double taken = r.events[0].time, held = r.events[0].held_time;
+    const double taken = r.events[0].time, held = r.events[0].attach_time;
     CollisionChecker before(group, world);
     World carried = world;
     const VectorXd q = t.at(held);

@@ -92,13 +92,13 @@ TEST_F(KeptRegions, LeavingPartsGiveWhatScratchGives) {
       for (std::size_t p = 0; p < parts.size(); ++p) {
         const CellMask now = kept.region(TrayId(tray), {parts[p]});
         EXPECT_EQ(now, region.part_cells[p].mask());
-        const PartExplanation told = kept.base_region(TrayId(tray)).explanations[p];
+        const PartExplanation reported = kept.base_region(TrayId(tray)).explanations[p];
         const PartExplanation& recount = region.explanations[p];
-        EXPECT_EQ(told.part, recount.part);
-        EXPECT_EQ(told.base_poses_tried, recount.base_poses_tried);
-        EXPECT_EQ(told.base_poses_feasible, recount.base_poses_feasible);
-        EXPECT_EQ(told.rejections, recount.rejections)
-            << told.rejections.summary() << " against " << recount.rejections.summary();
+        EXPECT_EQ(reported.part, recount.part);
+        EXPECT_EQ(reported.base_poses_tried, recount.base_poses_tried);
+        EXPECT_EQ(reported.base_poses_feasible, recount.base_poses_feasible);
+        EXPECT_EQ(reported.rejections, recount.rejections)
+            << reported.rejections.summary() << " against " << recount.rejections.summary();
         const std::vector<int>& known = parts_before[tray];
         const auto place = static_cast<std::size_t>(std::find(known.begin(), known.end(), parts[p]) - known.begin());
         const CellMask& then = before[tray][place];

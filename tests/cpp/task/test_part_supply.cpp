@@ -195,10 +195,10 @@ TEST(PartSupply, MissingReachSaysHowFarToMove) {
   const PartSupplyPlan failed = plan_part_supply(problem, database());
   ASSERT_EQ(failed.outcome, Outcome::not_found);
   ASSERT_EQ(failed.obstructions.size(), 1u);
-  const Obstruction& told = failed.obstructions[0];
-  EXPECT_EQ(told.stage, "region");
-  ASSERT_GT(told.reach_deficit, 0.0);
-  const double nearer = told.reach_deficit + 0.45;
+  const Obstruction& reported = failed.obstructions[0];
+  EXPECT_EQ(reported.stage, "region");
+  ASSERT_GT(reported.reach_deficit, 0.0);
+  const double nearer = reported.reach_deficit + 0.45;
   Tray& tray = problem.trays[0];
   tray.T_world_tray.translation().x() -= nearer;
   tray.parts[0].T_world_part.translation().x() -= nearer;

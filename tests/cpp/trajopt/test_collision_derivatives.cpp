@@ -1,4 +1,4 @@
-// What optimisers are told about collisions: values against distances, derivatives against central differences.
+// What optimisers get to know about collisions: values against distances, derivatives against central differences.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -121,7 +121,7 @@ TEST_P(CollisionDerivatives, AreOfTheDistancesAlongTheMotion) {
     VectorXd local(static_cast<Eigen::Index>(term.variables.size())), values(term.rows());
     for (std::size_t i = 0; i < term.variables.size(); ++i) local[static_cast<Eigen::Index>(i)] = x[term.variables[i]];
     term.value(local.data(), values.data());
-    // The fraction of the interval is not told: one of those that are looked at has all of the distances.
+    // The fraction of the interval is not reported: one of those that are looked at has all of the distances.
     double best = 1;
     for (int k = 0; k < 30; ++k) {
       const VectorXd q = motion.at(kStep * (term.waypoint + k / 30.0));

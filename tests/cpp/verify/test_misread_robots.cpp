@@ -100,7 +100,7 @@ const std::vector<Misreading>& misreadings() {
       {"velocity limit ignored", "lower=\"-3.1\" upper=\"3.1\" velocity=\"1\"",
        "lower=\"-3.1\" upper=\"3.1\" velocity=\"0.5\"", "joint 'yaw'", "velocity limit", "limit-exceeds-robot"},
       {"mesh scale ignored", "<mesh filename=\"hand.obj\"/>", "<mesh filename=\"hand.obj\" scale=\"1 1 4\"/>",
-       "link 'hand'", "mesh", "held-collision"},
+       "link 'hand'", "mesh", "attached-collision"},
       {"collision origin dropped", "<collision><geometry><box size=\"0.02 0.02 0.02\"/>",
        "<collision><origin xyz=\"0.5 0 0.5\"/><geometry><box size=\"0.02 0.02 0.02\"/>", "link 'base', collision 1",
        "origin", "route-collision"},
@@ -224,7 +224,7 @@ TEST(MisreadRobots, CapsulesKeepTheirCaps) {
     return codes_of(plan);
   };
   EXPECT_EQ(with_shape("cylinder"), Codes{});
-  EXPECT_TRUE(with_shape("capsule").count("held-collision"));
+  EXPECT_TRUE(with_shape("capsule").count("attached-collision"));
 }
 
 /// A robot put together of two URDFs and an added link is the same for the check.

@@ -138,7 +138,7 @@ TEST(PlanCheck, ObstacleThatOnlyTheHeldPartHits) {
   const Eigen::Vector3d bin(0.5, 0, kBinTop + kDropHeight + 0.5 * kCube);
   plan.obstacles.push_back(box("pin", {0.002, 0.002, 0.02}, at(bin.x() - 0.017, bin.y(), bin.z())));
   const Codes found = codes_of(plan);
-  EXPECT_TRUE(found.count("held-collision"));
+  EXPECT_TRUE(found.count("attached-collision"));
   EXPECT_FALSE(found.count("self-collision"));
 }
 

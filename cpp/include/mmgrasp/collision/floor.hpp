@@ -14,7 +14,7 @@ inline constexpr char kFloor[] = "floor";
 /// Puts level ground into the world: everything below z = `height` [m] is solid, without an end.
 ///
 /// - What the joints of `group` move (a base's x, y and theta do not count) must keep off it, and so must what is
-///   attached: the arm, the hand, a held part.
+///   attached: the arm, the hand, an attached part.
 /// - All other links may touch it. Wheels stand on it, and no configuration of the group brings any of these links
 ///   nearer to it.
 ///

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "mmgrasp/core/export.hpp"
+#include "mmgrasp/core/monitor.hpp"
 #include "mmgrasp/core/pose.hpp"
 #include "mmgrasp/geometry/mesh.hpp"
 
@@ -41,7 +42,8 @@ struct MMGRASP_EXPORT FittedPrimitive {
 /// normal) and refined by least squares over the corners of the faces, which lie on the true surface where chords do
 /// not. Walls that face inwards (bores) are never offered, nor are pairs of a box' faces of which one has less than a
 /// tenth of its area on it. `labels`: the segment of each face, as in MeshSegmentation. Throws InvalidInput when there
-/// is not one label >= 0 a face.
-MMGRASP_EXPORT std::vector<FittedPrimitive> fit_primitives(const TriangleMesh& mesh, const std::vector<int>& labels);
+/// is not one label >= 0 a face. Nothing when the monitor stops it.
+MMGRASP_EXPORT std::vector<FittedPrimitive> fit_primitives(const TriangleMesh& mesh, const std::vector<int>& labels,
+                                                           const Monitor& monitor = {});
 
 }  // namespace mmgrasp

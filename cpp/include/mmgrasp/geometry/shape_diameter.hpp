@@ -26,10 +26,10 @@ struct MMGRASP_EXPORT ShapeDiameterOptions {
 ///
 ///     2 (p - q) . (n - m) / |n - m|^2
 ///
-/// wide: the distance of p and q along the mean of the two normals, exact for every ray in a ball (2 r), a cylinder
+/// wide: the distance of p and q along the mean of the two normals, exact for every ray in a sphere (2 r), a cylinder
 /// (2 r), a plate (its thickness) and between the two walls of a tube. The value of a face is the mean over the rays
 /// that are no outliers, weighted by the cosine of their angle to the inward normal. With `ray_lengths` it is P1's
-/// weighted mean of |p - q|, which is (7/9) 2 r in a ball and 4/3 of the thickness in a plate (for many rays).
+/// weighted mean of |p - q|, which is (7/9) 2 r in a sphere and 4/3 of the thickness in a plate (for many rays).
 MMGRASP_EXPORT std::vector<double> shape_diameters(const TriangleMesh& mesh, const ShapeDiameterOptions& options = {},
                                                    const Monitor& monitor = {});
 

@@ -82,7 +82,7 @@ struct MMGRASP_EXPORT Hand {
   std::vector<double> openings;
   /// Groups that the opening does not move (how the fingers are spread), and how far open they stay, in [0, 1].
   std::map<std::string, double> preshape;
-  std::vector<std::string> finger_links;  ///< Links that may touch the held part.
+  std::vector<std::string> finger_links;  ///< Links that may touch the attached part.
   HandBody body;
 
   /// Reads a hand from a robot loaded with its meshes. Which joints spread the fingers and which end of a closing joint

@@ -10,7 +10,7 @@ namespace mmgrasp {
 /// What a gripper needs to hold one segment of a part in its operation: C_ij = {F, W, L-, L+} of P1 5.3.4. A part with
 /// several graspable segments has several of these; a gripper that meets one of them takes the part.
 struct MMGRASP_EXPORT SegmentRequirement {
-  std::string part;     ///< Whose segment it is; parts are told apart by this name.
+  std::string part;     ///< Whose segment it is; parts are distinguished by this name.
   std::string segment;  ///< Its label in messages and results; may be empty.
   int fingers = 2;      ///< 2: parallel jaws; 3: centric fingers.
   /// Characteristic length [m], > 0: the diameter of the fitted cylinder or the distance of the faces in touch.

@@ -89,7 +89,7 @@ class MMGRASP_EXPORT ReachDatabase {
   /// Up to `count` stored configurations near the pose, from its cell and the adjacent ones, nearest first (position
   /// distance in units of position_cell plus angle in units of rotation_cell). Adjacent are the 27 position cells
   /// around, the directions of the tool's z axis whose cells touch the pose's, and the three nearest rolls about it:
-  /// nothing within half a cell (0.5 of this distance) is ever missed. Distances are told apart down to about 2e-4.
+  /// nothing within half a cell (0.5 of this distance) is ever missed. Distances are distinguished down to about 2e-4.
   /// Columns of `out`; returns how many were written. `out` is resized only when too small: no allocation in the steady
   /// state.
   int nearest(const Pose& T_base_tip, int count, Eigen::MatrixXd& out) const;

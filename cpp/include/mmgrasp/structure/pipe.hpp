@@ -38,7 +38,7 @@ struct MMGRASP_EXPORT Pipe {
   Pose T_object_section(int section) const;
   /// Centre of mass of tubes with equal walls: sections weigh by length times diameter.
   Eigen::Vector3d centre_of_mass() const;
-  /// The solid for collision checks: a shape for each section and, with flat ends, a ball at each node where sections
+  /// The solid for collision checks: a shape for each section and, with flat ends, a sphere at each node where sections
   /// meet, as wide as the widest of them.
   std::vector<LinkShape> shapes(PipeEnds ends = PipeEnds::round) const;
 };

@@ -73,7 +73,7 @@ struct MMGRASP_EXPORT DriveByEvent {
   double close_time = 0;                 ///< When a gripper begins to close [s].
   std::string object;                    ///< What is held from then on; empty: nothing new.
   Pose T_tip_object = Pose::Identity();  ///< How the object is held.
-  double held_time = 0;                  ///< When the object begins to move with the tip [s]: the end of the dwell.
+  double attach_time = 0;                ///< When the object begins to move with the tip [s]: the end of the dwell.
   int candidate = 0;                     ///< Index of the candidate that was taken.
   double base_speed = 0;                 ///< Speed of the base at the waypoint [m/s].
   double tool_speed = 0;                 ///< Speed of the tip at the waypoint [m/s].
@@ -94,8 +94,8 @@ struct MMGRASP_EXPORT DriveByResult {
   double duration() const { return trajectory ? trajectory->duration() : 0; }
 };
 
-/// The trajectory's to_csv with two columns more: `task`, its index in the row of a task's waypoint, and `held`, the
-/// object in the hand. Throws InvalidInput without a trajectory.
+/// The trajectory's to_csv with two columns more: `task`, its index in the row of a task's waypoint, and `attached`,
+/// the object in the hand. Throws InvalidInput without a trajectory.
 MMGRASP_EXPORT std::string drive_by_csv(const DriveByResult& result, int between = 0);
 
 /// What a robot carries out: points at the waypoints and at most `period` [s] apart, and the gripper closing at every

@@ -140,11 +140,11 @@ struct MMGRASP_EXPORT PlanToCheck {
   Eigen::Vector2d bin_size = Eigen::Vector2d(0.3, 0.3);
   double drop_height = 0.03;
   /// Everything below this height is ground [m], which what the arm joints move must not touch: the arm, the fingers, a
-  /// held part. Other links may (wheels stand on it). -infinity: there is none.
+  /// attached part. Other links may (wheels stand on it). -infinity: there is none.
   double floor = -std::numeric_limits<double>::infinity();
   std::vector<CheckedBody> obstacles;
   std::vector<CheckedPart> parts;
-  std::vector<CheckedPair> allowed_collisions;  ///< Not looked at: what else these touch is.
+  std::vector<CheckedPair> allowed_collisions;  ///< Not checked: what else these touch is.
   /// The planner kept bodies apart by more than touching: cells beside a region, which serve without that, prove
   /// nothing.
   bool padded = false;
@@ -191,7 +191,7 @@ struct MMGRASP_EXPORT PlanCheckOptions {
 ///   `wrong-stop`, `stop-order`, `grasp-invalid` (no such index), `tray-unknown`, `tray-forgotten`, `tray-repeated`;
 /// - one arm motion: `motion-order`, `motion-shape` (lengths, NaN), `times`, `too-long`, `position-limit`,
 ///   `velocity-limit`, `acceleration-limit`, `discontinuous`, `not-at-rest`, `opening`, `holding`, `self-collision`,
-///   `scene-collision`, `held-collision`;
+///   `scene-collision`, `attached-collision`;
 /// - what it is for: `not-straight` (approach, lift), `short-approach`, `grasp-missed`, `grasp-empty` (fewer than two
 ///   fingers close on it, or a listed grasp has nothing between the pads), `grasp-opening` (pads at this width would
 ///   stand in the part, or clear of it), `no-lift` (or one that is too low), `release-outside`, `release-tilted`,

@@ -1,5 +1,5 @@
 // Bodies against distance fields: branch and bound over the pieces of a body. The true distance changes by at most the
-// way walked, so one value proves a whole ball.
+// way walked, so one value proves a whole sphere.
 #include "collision/narrow/field_query.hpp"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int kBatch = 16;           // points of one call of the field
-constexpr int kOverlapBatches = 32;  // looked at once a body overlaps: its deepest points may fill a surface
+constexpr int kOverlapBatches = 32;  // examined once a body overlaps: its deepest points may fill a surface
 
 /// Values at up to kBatch points. Matrices of every size are kept, since fields take whole ones.
 class Samples {
@@ -40,7 +40,7 @@ class Samples {
   int count_ = 0;
 };
 
-/// A convex part of the body: the ball around its middle holds it.
+/// A convex part of the body: the sphere around its middle holds it.
 struct Region {
   enum class Kind { whole, node, simplex, box, inside };
   Region() { corners.fill(Vector3d::Zero()); }
@@ -215,7 +215,7 @@ class Search {
     return body_.contains(looked.region.box.center());
   }
 
-  /// True: a point of the body has a value of `best_` or less, or none can be told apart from it.
+  /// True: a point of the body has a value of `best_` or less, or none can be distinguished from it.
   bool judge(const Looked& looked, int sample) {
     const double raw = samples_.distance(sample);
     const bool known = !std::isnan(raw), in_domain = looked.value_at == looked.middle;
@@ -231,7 +231,7 @@ class Search {
     if (!beats(lower)) return false;
     if (known && in_domain && lifted(looked, value, samples_.gradient(sample))) return false;
     if (looked.radius <= 0.5 * view_.resolution) {
-      // A node or a cell too small to be told apart from what it holds.
+      // A node or a cell too small to be distinguished from what it holds.
       if (!known && view_.unknown_is_free && unknown_passes_) return false;
       return take(known ? std::min(value, best_) : 0, looked.middle,
                   known ? samples_.gradient(sample) : Vector3d(0, 0, 0));
@@ -269,8 +269,8 @@ class Search {
     return true;
   }
 
-  /// Whether a ball about a point farther from the surface holds the region: what lies beyond a plane needs one such
-  /// ball only, where balls about its own points would be many.
+  /// Whether a sphere about a point farther from the surface holds the region: what lies beyond a plane needs one such
+  /// sphere only, where spheres about its own points would be many.
   bool lifted(const Looked& looked, double value, const Vector3d& gradient) const {
     double lowest = kInfinity;
     corners(looked, [&](const Vector3d& corner) { lowest = std::min(lowest, gradient.dot(corner - looked.middle)); });

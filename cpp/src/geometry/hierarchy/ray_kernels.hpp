@@ -30,16 +30,24 @@ struct TreeView {
   const TrianglePacket* packets;
 };
 
+/// Where the tree lies in the mesh's coordinates.
+struct TreePlace {
+  double lower[3], upper[3];  // box around the mesh, a little larger
+  double centre[3], scale;    // the tree's coordinates: (p - centre) * scale
+};
+
 /// A ray cut to the tree's box, ready for the traversal.
-struct PreparedRay {
-  double origin[3], nearest, farthest;
-  int axis[3];      // the last is the one along which the ray is longest; the others so that front faces stay front
+/// Of four numbers along the axes the last is filled up.
+struct alignas(32) PreparedRay {
+  double origin[4];
+  long long near[4], far[4];    // places in TreeNode::bounds of the faces through which the ray enters and leaves
+  float inverse[4], offset[4];  // for boxes: 1 / direction, -start / direction
+  double nearest, farthest;
   double shear[3];  // direction[axis[0 or 1]] / direction[axis[2]], 1 / direction[axis[2]]
-  // For boxes: lengths in the tree's coordinates, from where the ray enters the tree's box.
-  float inverse[3], offset[3];     // 1 / direction, -start / direction
-  std::ptrdiff_t near[3], far[3];  // places in TreeNode::bounds of the faces through which it enters and leaves
-  float start, length;             // how far boxes are worth a visit
-  double begin, to_length;         // length = (t - begin) * to_length
+  int axis[3];      // the last is the one along which the ray is longest; the others so that front faces stay front
+  // Lengths for boxes are in the tree's coordinates, from where the ray enters the tree's box.
+  float start, length;      // how far boxes are worth a visit
+  double begin, to_length;  // length = (t - begin) * to_length
 };
 
 struct RayRecord {
@@ -49,6 +57,9 @@ struct RayRecord {
 
 struct RayKernels {
   const char* name;
+  /// False: the ray, as far as it is to be followed, misses the tree's box.
+  bool (*prepare)(const TreePlace& place, const double* origin, const double* direction, double nearest,
+                  double farthest, PreparedRay& ray);
   void (*closest)(const TreeView& tree, const PreparedRay& ray, RayRecord& best);
   bool (*any)(const TreeView& tree, const PreparedRay& ray);
   /// Calls visit(data, packet) for each leaf whose box the ray meets.

@@ -45,6 +45,12 @@ TriangleTree::TriangleTree(const TriangleMesh& mesh) : closed_(mesh.closed) {
   centre_ = bounds_.center();
   const double half = 0.5 * bounds_.sizes().maxCoeff();
   scale_ = half > 0 ? 1 / half : 1;
+  for (int k = 0; k < 3; ++k) {
+    place_.lower[k] = bounds_.min()[k] - 1e-6 / scale_;
+    place_.upper[k] = bounds_.max()[k] + 1e-6 / scale_;
+    place_.centre[k] = centre_[k];
+  }
+  place_.scale = scale_;
   TreeBuilder(*this, mesh);
 }
 
@@ -114,51 +120,6 @@ bool TriangleTree::contains(const Vector3d& point) const {
     }
   });
   return winding > 0;
-}
-
-bool TriangleTree::prepare(const Vector3d& origin, const Vector3d& direction, double nearest, double farthest,
-                           PreparedRay& ray) const {
-  if (empty()) return false;
-  int longest = 0;
-  const double size = direction.cwiseAbs().maxCoeff(&longest);
-  const double margin = 1e-6 / scale_;
-  double begin = nearest, end = farthest, inverse[3];
-  for (int k = 0; k < 3; ++k) {
-    // Parallel to the box's face is as good as almost parallel.
-    const double component =
-        std::abs(direction[k]) > 1e-30 * size ? direction[k] : std::copysign(1e-30 * size, direction[k]);
-    inverse[k] = 1 / component;
-    const double a = (bounds_.min()[k] - margin - origin[k]) * inverse[k];
-    const double b = (bounds_.max()[k] + margin - origin[k]) * inverse[k];
-    begin = std::max(begin, std::min(a, b));
-    end = std::min(end, std::max(a, b));
-  }
-  if (!(begin <= end)) return false;
-  double length = direction.norm();
-  if (!(length > 1e-140 && length < 1e140)) length = size * (direction / size).norm();
-  ray.nearest = nearest;
-  ray.farthest = farthest;
-  ray.begin = begin;
-  ray.to_length = length * scale_;
-  ray.start = -2e-6f;
-  ray.length = static_cast<float>((end - begin) * ray.to_length) * 1.000001f + 2e-6f;
-  for (int k = 0; k < 3; ++k) {
-    ray.origin[k] = origin[k];
-    const float inverse_unit = static_cast<float>(inverse[k] * length);
-    ray.inverse[k] = inverse_unit;
-    ray.offset[k] = -static_cast<float>((origin[k] + begin * direction[k] - centre_[k]) * scale_) * inverse_unit;
-    const int lower = k * kTreeWidth, upper = (3 + k) * kTreeWidth;
-    ray.near[k] = std::signbit(direction[k]) ? upper : lower;
-    ray.far[k] = lower + upper - ray.near[k];
-  }
-  ray.axis[2] = longest;
-  ray.axis[0] = (longest + 1) % 3;
-  ray.axis[1] = (longest + 2) % 3;
-  if (direction[longest] < 0) std::swap(ray.axis[0], ray.axis[1]);
-  ray.shear[2] = inverse[longest];
-  ray.shear[0] = direction[ray.axis[0]] * ray.shear[2];
-  ray.shear[1] = direction[ray.axis[1]] * ray.shear[2];
-  return true;
 }
 
 }  // namespace mmgrasp::detail

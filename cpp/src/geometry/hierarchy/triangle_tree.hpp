@@ -43,7 +43,9 @@ class TriangleTree {
 
   /// False: the ray, as far as it is to be followed, misses the tree's box.
   bool prepare(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double nearest, double farthest,
-               PreparedRay& ray) const;
+               PreparedRay& ray) const {
+    return !empty() && ray_kernels().prepare(place_, origin.data(), direction.data(), nearest, farthest, ray);
+  }
 
   /// Calls visit(packet) for each leaf whose box the ray meets.
   template <class Visit>
@@ -58,6 +60,7 @@ class TriangleTree {
   Eigen::AlignedBox3d bounds_;
   Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();
   double scale_ = 1;  // of the tree's coordinates: (p - centre) * scale
+  TreePlace place_{};
   std::vector<TreeNode> nodes_;
   std::vector<TrianglePacket> packets_;
 };

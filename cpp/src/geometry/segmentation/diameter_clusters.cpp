@@ -5,12 +5,12 @@
 
 #include "geometry/segmentation/alpha_expansion.hpp"
 #include "geometry/segmentation/gaussian_mixture.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
 
 namespace mmgrasp::detail {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-/// Diameters that differ by less than 5 % are not told apart.
+/// Diameters that differ by less than 5 % are not distinguished.
 constexpr double kLeastSigma = 0.05;
 /// Rounds of averaging over neighbours, and the difference at which a neighbour counts by exp(-1/2).
 constexpr int kRounds = 3;

@@ -5,20 +5,19 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <limits>
 #include <map>
 #include <optional>
 #include <utility>
 
 #include "geometry/segmentation/face_graph.hpp"
 #include "geometry/segmentation/refine_models.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
 
 namespace mmgrasp::detail {
 namespace {
 
 using Eigen::Vector3d;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
-constexpr double kPi = 3.14159265358979323846;
 /// Edges that bend inwards by less are no roots [rad].
 constexpr double kRootBend = 0.35;
 constexpr double kLeastTurns = 2;
@@ -105,7 +104,7 @@ Place place_at(const Helix& helix, const Vector3d& x) {
 }
 
 struct Range {
-  double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
+  double low = kInfinity, high = -kInfinity;
   void add(double x) {
     low = std::min(low, x);
     high = std::max(high, x);
@@ -219,7 +218,7 @@ std::optional<std::vector<int>> edges_in_phase(const FaceGraph& graph, const std
   const double phase = std::arg(unwound(turns, best));
   std::vector<int> out;
   for (const Turn& t : turns) {
-    if (std::abs(std::remainder(t.angle - best * t.height - phase, 2 * kPi)) < kPhase) out.push_back(t.edge);
+    if (std::abs(shortest_turn(t.angle - best * t.height - phase)) < kPhase) out.push_back(t.edge);
   }
   return out;
 }

@@ -1,9 +1,9 @@
 #include "mmgrasp/geometry/fit_primitives.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <string>
 
@@ -154,7 +154,7 @@ SegmentSurface segment_surface(const TriangleMesh& mesh, const std::vector<int>&
 
 FittedPrimitive box_candidate(const SegmentSurface& s) {
   FittedPrimitive best;
-  double least = std::numeric_limits<double>::infinity();
+  double least = detail::kInfinity;
   const auto offer = [&](const Vector3d& z, const Vector3d& x) {
     Eigen::Matrix3d axes;
     axes << x, z.cross(x), z;
@@ -194,13 +194,15 @@ const char* primitive_kind_name(PrimitiveKind kind) {
   return "";
 }
 
-std::vector<FittedPrimitive> fit_primitives(const TriangleMesh& mesh, const std::vector<int>& labels) {
+std::vector<FittedPrimitive> fit_primitives(const TriangleMesh& mesh, const std::vector<int>& labels,
+                                            const Monitor& monitor) {
   require(labels.size() == mesh.triangles.size(), "labels", static_cast<double>(labels.size()),
           "must be one a face, " + std::to_string(mesh.triangles.size()));
   std::vector<std::vector<int>> segments;
   for (std::size_t f = 0; f < labels.size(); ++f) {
-    require(labels[f] >= 0 && labels[f] < static_cast<int>(labels.size()), "labels[" + std::to_string(f) + "]",
-            labels[f], "must be 0 or more and below the number of faces");
+    if (labels[f] < 0 || labels[f] >= static_cast<int>(labels.size())) {
+      require(false, "labels[" + std::to_string(f) + "]", labels[f], "must be 0 or more and below the number of faces");
+    }
     if (segments.size() <= static_cast<std::size_t>(labels[f])) segments.resize(labels[f] + 1);
     segments[labels[f]].push_back(static_cast<int>(f));
   }
@@ -208,13 +210,15 @@ std::vector<FittedPrimitive> fit_primitives(const TriangleMesh& mesh, const std:
   TriangleMesh outward = mesh;
   detail::turn_outwards(outward);
   for (const std::vector<int>& faces : segments) {
+    monitor.report("primitives", static_cast<double>(out.size()) / static_cast<double>(segments.size()));
     const SegmentSurface surface = detail::segment_surface(outward, faces);
     const double hull_volume = surface.hull.volume * std::pow(surface.scale, 3);
     FittedPrimitive best = detail::box_candidate(surface);
-    for (FittedPrimitive& round : detail::round_candidates(surface)) {
+    for (FittedPrimitive& round : detail::round_candidates(surface, monitor)) {
       if (std::abs(round.volume - hull_volume) < std::abs(best.volume - hull_volume)) best = std::move(round);
     }
     best.hull_volume = hull_volume;
+    if (monitor.stopped()) return {};
     out.push_back(std::move(best));
   }
   return out;

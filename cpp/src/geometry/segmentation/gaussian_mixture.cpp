@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/random.hpp"
 
 namespace mmgrasp::detail {
@@ -22,7 +22,7 @@ struct Bins {
 };
 
 Bins gather(const std::vector<double>& samples, const std::vector<double>& weights) {
-  double low = std::numeric_limits<double>::infinity(), high = -low, total = 0;
+  double low = kInfinity, high = -low, total = 0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (!(weights[i] > 0)) continue;
     low = std::min(low, samples[i]);
@@ -63,14 +63,14 @@ GaussianMixture first_guess(const Bins& bins, int components, double least_sigma
   while (static_cast<int>(centres.size()) < components) {
     std::vector<double> chances(bins.x.size());
     for (std::size_t i = 0; i < bins.x.size(); ++i) {
-      double nearest = std::numeric_limits<double>::infinity();
+      double nearest = kInfinity;
       for (const double c : centres) nearest = std::min(nearest, std::abs(bins.x[i] - c));
       chances[i] = bins.weight[i] * nearest * nearest;
     }
     centres.push_back(bins.x[draw(chances, rng)]);
   }
   for (std::size_t i = 0; i < bins.x.size(); ++i) {
-    double nearest = std::numeric_limits<double>::infinity();
+    double nearest = kInfinity;
     for (const double c : centres) nearest = std::min(nearest, std::abs(bins.x[i] - c));
     spread += bins.weight[i] * nearest * nearest;
   }
@@ -82,12 +82,12 @@ GaussianMixture first_guess(const Bins& bins, int components, double least_sigma
 
 void maximise(const Bins& bins, double least_sigma, GaussianMixture& mixture) {
   const std::size_t k = mixture.components.size();
-  double before = -std::numeric_limits<double>::infinity();
+  double before = -kInfinity;
   for (int step = 0; step < kMostSteps; ++step) {
     std::vector<double> share(k, 0), sum(k, 0), square(k, 0), parts(k);
     mixture.log_likelihood = 0;
     for (std::size_t i = 0; i < bins.x.size(); ++i) {
-      double largest = -std::numeric_limits<double>::infinity(), total = 0;
+      double largest = -kInfinity, total = 0;
       for (std::size_t c = 0; c < k; ++c) {
         parts[c] = mixture.log_part(static_cast<int>(c), bins.x[i]);
         largest = std::max(largest, parts[c]);
@@ -126,7 +126,7 @@ GaussianMixture fit_mixture(const std::vector<double>& samples, const std::vecto
                             double least_sigma, double count, unsigned seed) {
   const Bins bins = gather(samples, weights);
   GaussianMixture best;
-  double least = std::numeric_limits<double>::infinity();
+  double least = kInfinity;
   for (int k = 1; k <= std::min<int>(most, static_cast<int>(bins.x.size())); ++k) {
     for (int start = 0; start < (k == 1 ? 1 : kStarts); ++start) {
       Rng rng(seed, static_cast<std::uint64_t>(k * kStarts + start));

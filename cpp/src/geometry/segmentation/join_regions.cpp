@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <utility>
 
 #include "geometry/segmentation/convex_parts.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
 
 namespace mmgrasp::detail {
 namespace {
@@ -30,7 +30,7 @@ struct Region {
   double width() const {
     double length = 0;
     for (const auto& [other, shared] : around) length += shared;
-    return length > 0 ? 2 * area / length : std::numeric_limits<double>::infinity();
+    return length > 0 ? 2 * area / length : kInfinity;
   }
 };
 
@@ -79,7 +79,7 @@ class RegionJoiner {
       }
       if (least < 0) return;
       int best = -1;
-      auto best_cost = std::make_pair(std::numeric_limits<double>::infinity(), 0.0);
+      auto best_cost = std::make_pair(kInfinity, 0.0);
       for (const auto& [other, shared] : regions_[least].around) {
         const auto cost = std::make_pair(uncovered_volume(regions_[least].hull, regions_[other].hull), -shared);
         if (cost >= best_cost) continue;
@@ -97,7 +97,7 @@ class RegionJoiner {
     std::map<std::pair<int, int>, double> known;
     while (true) {
       std::pair<int, int> best{-1, -1};
-      double least = std::numeric_limits<double>::infinity();
+      double least = kInfinity;
       for (std::size_t r = 0; r < regions_.size(); ++r) {
         if (!regions_[r].alive) continue;
         for (const auto& [other, shared] : regions_[r].around) {
@@ -140,7 +140,7 @@ class RegionJoiner {
   static double excess(const Region& a, const Region& b, double convexity) {
     RegionHull hull;
     const double open = uncovered_volume(a.hull, b.hull, &hull);
-    if (hull.volume <= 0) return std::numeric_limits<double>::infinity();
+    if (hull.volume <= 0) return kInfinity;
     if (share_on(hull, a) >= kOnHull && share_on(hull, b) >= kOnHull) return -1;
     return (open - convexity * std::min(a.hull.volume, b.hull.volume)) / hull.volume - kVolumeError;
   }

@@ -3,17 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "geometry/segmentation/ransac_models.hpp"
 #include "geometry/segmentation/refine_models.hpp"
 #include "geometry/segmentation/segment_surface.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
 
 namespace mmgrasp::detail {
 namespace {
 
 using Eigen::Vector3d;
-constexpr double kPi = 3.14159265358979323846;
 /// Points no farther from a model than this share of the segment's size lie on it.
 constexpr double kOnSurface = 0.01;
 /// Angle of a face's normal to the model's below which it lies on it [rad]: a facet of a wall of 12 sides does.
@@ -48,7 +47,7 @@ Cover cover_of(const SegmentSurface& s, const RoundFit& fit) {
     const double at = std::atan2((middle - fit.point).dot(v), (middle - fit.point).dot(u));
     for (const Vector3d& corner : s.corners[f]) {
       const double to = std::atan2((corner - fit.point).dot(v), (corner - fit.point).dot(u));
-      const double turned = std::remainder(to - at, 2 * kPi);
+      const double turned = shortest_turn(to - at);
       low = std::min(low, turned);
       high = std::max(high, turned);
     }
@@ -99,7 +98,7 @@ FittedPrimitive placed(const SegmentSurface& s, const RoundFit& fit, const Cover
     out.widths.push_back({out.size.x(), Vector3d::UnitZ(), cover.area / (4 * kPi * fit.radius * fit.radius)});
     return out;
   }
-  double low = std::numeric_limits<double>::infinity(), high = -low;
+  double low = kInfinity, high = -low;
   for (const Vector3d& p : s.hull.points) {
     low = std::min(low, (p - fit.point).dot(fit.axis));
     high = std::max(high, (p - fit.point).dot(fit.axis));
@@ -124,7 +123,7 @@ FittedPrimitive placed(const SegmentSurface& s, const RoundFit& fit, const Cover
 
 }  // namespace
 
-std::vector<FittedPrimitive> round_candidates(const SegmentSurface& s) {
+std::vector<FittedPrimitive> round_candidates(const SegmentSurface& s, const Monitor& monitor) {
   std::vector<FittedPrimitive> out;
   for (const RoundModel model : {RoundModel::cylinder, RoundModel::cone, RoundModel::sphere}) {
     std::vector<Vector3d> points, normals;
@@ -133,7 +132,7 @@ std::vector<FittedPrimitive> round_candidates(const SegmentSurface& s) {
       points.push_back(s.points[i]);
       normals.push_back(s.normals[i]);
     }
-    for (int round = 0; round < kMostModels && points.size() >= 8; ++round) {
+    for (int round = 0; round < kMostModels && points.size() >= 8 && !monitor.stopped(); ++round) {
       std::vector<int> on = points_on_model(points, normals, model, kOnSurface);
       if (on.size() < 8) break;
       std::vector<Vector3d> p, n;

@@ -1,4 +1,5 @@
 #include "mmgrasp/geometry/segment_mesh.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -149,7 +150,7 @@ void MeshSegmentationOptions::check() const {
   diameter.check();
   require(max_clusters >= 1 && max_clusters <= 32, "max_clusters", max_clusters, "must be from 1 to 32");
   require(smoothing >= 0 && std::isfinite(smoothing), "smoothing", smoothing, "must be 0 or more, and finite");
-  require(crease > 0 && crease < 3.14159265358979, "crease", crease, "must be above 0 and below pi rad");
+  require(crease > 0 && crease < detail::kPi, "crease", crease, "must be above 0 and below pi rad");
   require(min_size > 0 && min_size < 0.5, "min_size", min_size, "must be above 0 and below 0.5");
   require(convexity >= 0 && std::isfinite(convexity), "convexity", convexity, "must be 0 or more, and finite");
   require(faces >= 1 && faces <= 1'000'000, "faces", faces, "must be from 1 to 1000000");

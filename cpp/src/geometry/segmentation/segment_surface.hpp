@@ -27,7 +27,7 @@ struct SegmentSurface {
 SegmentSurface segment_surface(const TriangleMesh& mesh, const std::vector<int>& faces);
 
 /// Round primitives with outward surface around at least half a turn (a sphere: a quarter of it), in the mesh's frame.
-std::vector<FittedPrimitive> round_candidates(const SegmentSurface& surface);
+std::vector<FittedPrimitive> round_candidates(const SegmentSurface& surface, const Monitor& monitor);
 
 /// The box around the segment of the least volume that is aligned with a large flat part of it, or with none.
 FittedPrimitive box_candidate(const SegmentSurface& surface);

@@ -1,4 +1,5 @@
 #include "mmgrasp/geometry/shape_diameter.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -12,7 +13,6 @@ namespace mmgrasp {
 namespace {
 
 using Eigen::Vector3d;
-constexpr double kPi = 3.14159265358979323846;
 /// Faces whose rays are cast together.
 constexpr std::size_t kBatch = 64;
 /// Shells that a ray may pass through before it is given up.
@@ -22,7 +22,7 @@ constexpr double kOffset = 1e-7;
 
 /// Directions around +z at equal shares of the cone's solid angle, on a spiral of the golden angle.
 std::vector<Vector3d> cone_directions(int rays, double cone) {
-  const double lowest = std::cos(cone / 2), golden = kPi * (3 - std::sqrt(5.0));
+  const double lowest = std::cos(cone / 2), golden = detail::kPi * (3 - std::sqrt(5.0));
   std::vector<Vector3d> out;
   for (int k = 0; k < rays; ++k) {
     const double z = 1 - (1 - lowest) * (k + 0.5) / rays, r = std::sqrt(1 - z * z);
@@ -121,7 +121,7 @@ class DiameterMeter {
 
 void ShapeDiameterOptions::check() const {
   require(rays >= 1 && rays <= 1000, "rays", rays, "must be from 1 to 1000");
-  require(cone > 0 && cone < kPi, "cone", cone, "must be above 0 and below pi rad");
+  require(cone > 0 && cone < detail::kPi, "cone", cone, "must be above 0 and below pi rad");
   require(outlier > 0 && std::isfinite(outlier), "outlier", outlier, "must be positive and finite");
   require(threads >= 0, "threads", threads, "must be 0 (all) or more");
 }

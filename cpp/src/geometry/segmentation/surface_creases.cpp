@@ -56,7 +56,7 @@ double bend_around(const FaceGraph& graph, int face, double reach, Walk& walk) {
       const bool inside = (graph.centres[other] - graph.centres[face]).norm() <= reach;
       if (walk.edges_seen[graph.border_of[i]] != face) {
         walk.edges_seen[graph.border_of[i]] = face;
-        // The part of the edge within the ball.
+        // The part of the edge within the sphere.
         const Vector3d &a = graph.vertices[border.vertices[0]], &b = graph.vertices[border.vertices[1]];
         const Vector3d along = (b - a) / std::max(border.length, 1e-300);
         const double foot = (graph.centres[face] - a).dot(along);

@@ -207,8 +207,8 @@ class OutwardCollapse {
     return true;
   }
 
-  /// Some points of the new triangles, so that the proof that follows seldom fails: over a dent not the corners stand
-  /// off but what spans between them.
+  /// Some points of the new triangles, so that the proof that follows seldom fails: over a concavity not the corners
+  /// stand off but what spans between them.
   bool near_enough(const Vector3d& target, int a, int b, const std::vector<int>& faces) const {
     if (tree_.distance(target) > reach_) return false;
     for (const int t : faces) {

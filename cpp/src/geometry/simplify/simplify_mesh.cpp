@@ -73,7 +73,7 @@ bool exact_box(const TriangleMesh& mesh, MeshStandIn& found) {
   return true;
 }
 
-/// Centre of a ball around the points that is nearly as small as can be (Badoiu and Clarkson's steps towards the
+/// Centre of a sphere around the points that is nearly as small as can be (Badoiu and Clarkson's steps towards the
 /// farthest point).
 template <typename Vector>
 Vector sphere_centre(const std::vector<Vector>& points) {
@@ -150,7 +150,7 @@ class PrimitiveFit {
     const Vector3d centre = sphere_centre(hull_.vertices);
     double radius = 0;
     for (const Vector3d& v : mesh_.vertices) radius = std::max(radius, (v - centre).norm());
-    // A ball about the same centre lies in the hull: no point of the sphere is farther from it than the radii differ.
+    // A sphere about the same centre lies in the hull: no point of the sphere is farther from it than the radii differ.
     double inner = detail::kInfinity;
     for (const auto& t : hull_.triangles) {
       const Vector3d& a = hull_.vertices[t[0]];

@@ -150,7 +150,7 @@ class Range {
     const double moved = way.norm() + std::abs(turn.angle()) * farthest();
     const double count = std::ceil(moved / step_);
     if (!(count < kMaxLooks))
-      throw InvalidInput("step = " + std::to_string(step_) + ": the motion would be looked at more than 1000000 times");
+      throw InvalidInput("step = " + std::to_string(step_) + ": the motion would be checked more than 1000000 times");
     const int looks = std::max(1, static_cast<int>(count));
     const Pose tool_a = from * grasp_.T_active_tool, tool_b = to * grasp_.T_active_tool;
     for (int k = 0; k <= looks && range_.shortest <= range_.longest; ++k) {

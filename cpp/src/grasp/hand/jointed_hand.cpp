@@ -86,10 +86,9 @@ class JointedHand final : public HandModel {
       if (!detail::hangs_on(robot_, link, body)) continue;
       for (const LinkShape& shape : robot_.links()[link].collisions) {
         const Eigen::AlignedBox3d bounds = shape_bounds(shape.shape);
-        LinkShape box;
-        box.shape.emplace<Box>().size = bounds.sizes();
-        box.T_link_shape = shape.T_link_shape * Eigen::Translation3d(bounds.center());
-        link_boxes_.push_back(box);
+        link_boxes_.emplace_back();
+        link_boxes_.back().shape = Box{bounds.sizes()};
+        link_boxes_.back().T_link_shape = shape.T_link_shape * Eigen::Translation3d(bounds.center());
         box_link_.push_back(link);
       }
     }

@@ -44,7 +44,7 @@ bool HandClearance::touches(const Pose& T, const Vector3d& half, const std::opti
   const Vector3d reach = T.linear().cwiseAbs() * half + Vector3d::Constant(most);
   const Eigen::Matrix3d to_box = T.linear().transpose();
   const Vector3d offset = to_box * T.translation();
-  // A cell is passed over when its middle is farther from the box than its half diagonal and the largest ball.
+  // A cell is passed over when its middle is farther from the box than its half diagonal and the largest sphere.
   const double far = grid_.side() * std::sqrt(3.0) / 2 + most;
   return grid_.any_cell(
       {T.translation() - reach, T.translation() + reach},

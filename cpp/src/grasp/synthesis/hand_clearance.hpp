@@ -17,7 +17,7 @@ enum class HandContact { none, table, map };
 /// are two voxels apart at most, so that nothing thicker slips between them.
 class MMGRASP_EXPORT HandClearance {
  public:
-  /// Each point is a ball of `margin` + `sigmas` times its own sigma [m].
+  /// Each point is a sphere of `margin` + `sigmas` times its own sigma [m].
   HandClearance(const std::vector<Eigen::Vector3d>& points, const std::vector<double>& sigma, double sigmas,
                 double margin, const std::optional<double>& table);
 

@@ -45,7 +45,7 @@ class CoarseImage {
     }
   }
 
-  /// Whether a ball may meet the band around a surface.
+  /// Whether a sphere may meet the band around a surface.
   bool meets_surface(const Vector3d& centre, double radius) const {
     const double nearest = centre.z() - radius;
     if (nearest <= camera_.nearest) return centre.z() + radius > camera_.nearest;
@@ -65,12 +65,12 @@ class CoarseImage {
   }
 
   enum class View { free, hidden, mixed };
-  /// A ball around `centre` in the camera's frame, apart from surfaces of this frame.
+  /// A sphere around `centre` in the camera's frame, apart from surfaces of this frame.
   View view(const Vector3d& centre, double radius) const {
     const double nearest = centre.z() - radius;
     if (centre.z() + radius <= camera_.nearest) return View::hidden;
     if (nearest <= camera_.nearest) return View::mixed;
-    // Projections of the ball lie within this of its centre's.
+    // Projections of the sphere lie within this of its centre's.
     const double x = centre.x() / centre.z(), y = centre.y() / centre.z();
     const double spread = radius / nearest * (1 + std::max(std::abs(x), std::abs(y)));
     const double u0 = camera_.cx + camera_.fx * (x - spread), u1 = camera_.cx + camera_.fx * (x + spread);
@@ -369,7 +369,7 @@ class FrameIntegration {
   Pose T_camera_world_ = Pose::Identity();
   int layer_ = 0;
   std::vector<WorkBlock> work_;
-  KeyTable candidates_;  // 1: in work_, 0: looked at and apart from every surface
+  KeyTable candidates_;  // 1: in work_, 0: checked and apart from every surface
   std::size_t missing_ = 0;
   std::vector<int> free_, mixed_;
 };

@@ -105,7 +105,7 @@ class NormalFitter {
   SurfaceCells& cells_;
   Vector3d eye_;
   std::vector<Moments> own_;
-  std::vector<int> visited_;  ///< The last window that a cell was looked at for.
+  std::vector<int> visited_;  ///< The last window that a cell was examined for.
   std::vector<int> stack_;
 };
 

@@ -1,11 +1,11 @@
 #include "plan/manipulation/least_grasp_cost.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 #include <optional>
 #include <string>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/detail/stopwatch.hpp"
 #include "plan/manipulation/common/manipulation_planner.hpp"
 
@@ -24,7 +24,7 @@ ManipulationResult plan_least_grasp_cost(const ManipulationProblem& problem, con
   ManipulationProblem left = problem;
   std::vector<int> index(problem.grasps.size());
   std::iota(index.begin(), index.end(), 0);
-  double cheapest = std::numeric_limits<double>::infinity();
+  double cheapest = kInfinity;
   for (Grasp& grasp : left.grasps) {
     cheapest = std::min(cheapest, grasp.cost);
     grasp.cost = 0;

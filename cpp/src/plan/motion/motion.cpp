@@ -334,7 +334,7 @@ MotionResult plan_motion_via(CollisionChecker& checker, const Eigen::VectorXd& s
     checker.group().check_configuration(via[i], "via[" + std::to_string(i) + "]");
   const detail::Stopwatch stopwatch;
   MotionOptions of_segment = options;
-  of_segment.on_improvement = {};  // told of whole paths
+  of_segment.on_improvement = {};  // reported for whole paths
   JointPath path{{start}};
   MotionStats stats;
   for (std::size_t segment = 0; segment <= via.size(); ++segment) {

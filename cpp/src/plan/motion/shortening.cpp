@@ -105,7 +105,7 @@ class Shortener {
   bool replace_if_better(const PathPoint& a, const PathPoint& b, const Waypoints& old_stretch, Waypoints new_stretch,
                          double least_gain) {
     if (length(old_stretch) - length(new_stretch) < least_gain) return false;
-    // Most shortcuts are blocked between their ends: those are looked at last. Waypoints are free; a point within an
+    // Most shortcuts are blocked between their ends: those are checked last. Waypoints are free; a point within an
     // edge lies between its checks.
     const std::size_t last = new_stretch.size() - 2;
     for (std::size_t i = 0; i <= last; ++i) {

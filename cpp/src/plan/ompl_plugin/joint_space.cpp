@@ -7,11 +7,12 @@
 #include <cmath>
 #include <random>
 
+#include "mmgrasp/core/detail/numbers.hpp"
+
 namespace mmgrasp_ompl {
 namespace ob = ompl::base;
 namespace {
 
-constexpr double kTwoPi = 2 * M_PI;
 constexpr double kLeastBoxShare = 1e-3;  // Smallest box around the start or a goal, as a share of the bounds.
 
 /// Draws from a generator of its own: OMPL's are seeded from one per process, and would differ from run to run.
@@ -57,14 +58,14 @@ class SeededSampler : public ob::StateSampler {
     for (unsigned int i = 0; i < space_->getDimension(); ++i) {
       const double reach = share * (bounds.high[i] - bounds.low[i]);
       values(state)[i] =
-          space_->wraps(i) ? std::remainder(end[i] + between(-reach, reach) / 2, kTwoPi)
+          space_->wraps(i) ? mmgrasp::detail::shortest_turn(end[i] + between(-reach, reach) / 2)
                            : between(std::max(bounds.low[i], end[i] - reach), std::min(bounds.high[i], end[i] + reach));
     }
   }
 
   double uniform() { return static_cast<double>(generator_() >> 11) * 0x1.0p-53; }
   double between(double low, double high) { return low + (high - low) * uniform(); }
-  double normal() { return std::sqrt(-2 * std::log(1 - uniform())) * std::cos(kTwoPi * uniform()); }
+  double normal() { return std::sqrt(-2 * std::log(1 - uniform())) * std::cos(mmgrasp::detail::kTwoPi * uniform()); }
 
   const JointSpace* space_;
   std::shared_ptr<RunContext> context_;
@@ -103,15 +104,15 @@ JointSpace::JointSpace(std::shared_ptr<RunContext> context)
   for (int i = 0; i < problem.size; ++i) {
     wraps_.push_back(problem.wraps[i] != 0);
     any_wraps_ |= wraps_.back();
-    bounds.setLow(i, wraps_.back() ? -M_PI : problem.lower[i]);
-    bounds.setHigh(i, wraps_.back() ? M_PI : problem.upper[i]);
+    bounds.setLow(i, wraps_.back() ? -mmgrasp::detail::kPi : problem.lower[i]);
+    bounds.setHigh(i, wraps_.back() ? mmgrasp::detail::kPi : problem.upper[i]);
   }
   setBounds(bounds);
   if (any_wraps_) type_ = ob::STATE_SPACE_UNKNOWN;
 }
 
 double JointSpace::difference(double from, double to, unsigned int index) const {
-  return wraps_[index] ? std::remainder(to - from, kTwoPi) : to - from;
+  return wraps_[index] ? mmgrasp::detail::shortest_turn(to - from) : to - from;
 }
 
 double JointSpace::distance(const ob::State* a, const ob::State* b) const {
@@ -126,14 +127,14 @@ double JointSpace::distance(const ob::State* a, const ob::State* b) const {
 void JointSpace::interpolate(const ob::State* from, const ob::State* to, double t, ob::State* state) const {
   for (unsigned int i = 0; i < dimension_; ++i) {
     const double value = values(from)[i] + t * difference(values(from)[i], values(to)[i], i);
-    values(state)[i] = wraps_[i] ? std::remainder(value, kTwoPi) : value;
+    values(state)[i] = wraps_[i] ? mmgrasp::detail::shortest_turn(value) : value;
   }
 }
 
 void JointSpace::enforceBounds(ob::State* state) const {
   for (unsigned int i = 0; i < dimension_; ++i) {
     double& value = values(state)[i];
-    value = wraps_[i] ? std::remainder(value, kTwoPi) : std::clamp(value, bounds_.low[i], bounds_.high[i]);
+    value = wraps_[i] ? mmgrasp::detail::shortest_turn(value) : std::clamp(value, bounds_.low[i], bounds_.high[i]);
   }
 }
 
@@ -144,7 +145,7 @@ bool JointSpace::equalStates(const ob::State* a, const ob::State* b) const {
 double JointSpace::getMaximumExtent() const {
   double sum = 0;
   for (unsigned int i = 0; i < dimension_; ++i) {
-    const double extent = wraps_[i] ? M_PI : bounds_.high[i] - bounds_.low[i];
+    const double extent = wraps_[i] ? mmgrasp::detail::kPi : bounds_.high[i] - bounds_.low[i];
     sum += extent * extent;
   }
   return std::sqrt(sum);

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <utility>
 
+#include "mmgrasp/core/detail/stopwatch.hpp"
 #include "plan/ompl_plugin/plugin_api.hpp"
 
 namespace mmgrasp_ompl {
@@ -17,11 +17,7 @@ struct RunStopped {};
 class RunContext {
  public:
   RunContext(const MmgraspOmplProblem& problem, bool count_rounds, bool roadmap)
-      : problem_(problem),
-        count_rounds_(count_rounds),
-        roadmap_(roadmap),
-        deadline_(std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
-                                                         std::chrono::duration<double>(problem.time_limit))) {}
+      : problem_(problem), count_rounds_(count_rounds), roadmap_(roadmap), time_limit_(problem.time_limit) {}
 
   const MmgraspOmplProblem& problem() const { return problem_; }
 
@@ -48,7 +44,7 @@ class RunContext {
   }
 
   /// By the caller or the time limit.
-  bool stopped() const { return problem_.stopped(problem_.user) != 0 || std::chrono::steady_clock::now() >= deadline_; }
+  bool stopped() const { return problem_.stopped(problem_.user) != 0 || time_limit_.expired(); }
 
   /// The termination condition: called by planners once per round or more often.
   bool finished() {
@@ -61,7 +57,7 @@ class RunContext {
  private:
   const MmgraspOmplProblem& problem_;
   bool count_rounds_, roadmap_;
-  std::chrono::steady_clock::time_point deadline_;
+  mmgrasp::detail::TimeLimit time_limit_;
   long draws_ = 0, checks_ = 0, rounds_ = 0;
   std::uint64_t samplers_ = 0;
   std::function<void()> on_budget_check_;

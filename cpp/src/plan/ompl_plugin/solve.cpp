@@ -10,12 +10,12 @@
 #include <cmath>
 #include <cstring>
 #include <exception>
-#include <limits>
 #include <mutex>
 #include <shared_mutex>
 #include <string>
 #include <vector>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "plan/ompl_plugin/joint_space.hpp"
 #include "plan/ompl_plugin/planners.hpp"
 #include "plan/ompl_plugin/plugin_api.hpp"
@@ -104,7 +104,7 @@ class Improvements {
     // Some leave the goal out as well; the cost shows which it is.
     const auto* goals = definition_->getGoal()->as<ob::GoalStates>();
     const ob::State* end = nullptr;
-    double least = std::numeric_limits<double>::infinity();
+    double least = mmgrasp::detail::kInfinity;
     for (unsigned int g = 0; g < goals->getStateCount(); ++g) {
       if (same(states.back(), goals->getState(g))) return report(states);
       const double off = std::abs(length(states) + si_->distance(states.back(), goals->getState(g)) - cost);
@@ -146,7 +146,7 @@ class Improvements {
   const ob::SpaceInformationPtr si_;
   const ob::ProblemDefinitionPtr definition_;
   ob::PathPtr last_;
-  double best_ = std::numeric_limits<double>::infinity();
+  double best_ = mmgrasp::detail::kInfinity;
 };
 
 int run(const MmgraspOmplProblem& problem) {

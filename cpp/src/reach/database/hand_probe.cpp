@@ -38,7 +38,7 @@ void append(std::vector<LinkShape>& shapes, const std::vector<LinkShape>& more, 
 
 std::optional<CollisionChecker> probe(const std::vector<LinkShape>& hand, World world) {
   if (hand.empty() || (world.objects().empty() && world.fields().empty())) return std::nullopt;
-  // Held objects go wherever the root of this robot of nothing is put.
+  // Attached objects go wherever the root of this robot of nothing is put.
   static const Robot nothing = Robot::from_strings(
       "<robot name='nothing'><link name='tip'/><link name='end'/><joint name='still' type='revolute'>"
       "<parent link='tip'/><child link='end'/><axis xyz='0 0 1'/>"

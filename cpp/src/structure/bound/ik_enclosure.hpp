@@ -32,7 +32,7 @@ class MMGRASP_EXPORT IkEnclosure {
   /// Throws InvalidInput for other groups; what an arm is off its special geometry (at most 1e-6) widens all answers.
   explicit IkEnclosure(const JointGroup& group);
 
-  /// Joint values up to whole turns; limits are not looked at.
+  /// Joint values up to whole turns; limits are not checked.
   std::vector<FormConfiguration> branches(const FormPose& T_world_tip) const;
   /// Each in every whole turn that may lie within limits.
   std::vector<FormConfiguration> within_limits(const FormPose& T_world_tip) const;

@@ -3,7 +3,7 @@
 #include <map>
 #include <vector>
 
-#include "structure/object_path/held_object.hpp"
+#include "structure/object_path/attached_object.hpp"
 #include "structure/object_path/path_bound.hpp"
 
 namespace mmgrasp::detail {
@@ -12,13 +12,13 @@ namespace mmgrasp::detail {
 /// middle by more than any of their points moves over the box.
 class CollisionProof {
  public:
-  explicit CollisionProof(const ObjectPathProblem& problem) : held_(problem) {}
+  explicit CollisionProof(const ObjectPathProblem& problem) : object_(problem) {}
 
   /// Looks at one configuration for each pose and excludes those that are proven to collide; true when there was one.
   bool exclude(BoxGraph& graph, const std::vector<int>& branches, const Grasp& middle);
 
  private:
-  HeldObject held_;
+  AttachedObject object_;
 };
 
 }  // namespace mmgrasp::detail

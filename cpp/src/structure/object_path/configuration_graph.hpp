@@ -1,10 +1,10 @@
 #pragma once
 
 #include <functional>
-#include <limits>
 #include <utility>
 #include <vector>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/export.hpp"
 
 namespace mmgrasp::detail {
@@ -25,7 +25,7 @@ class MMGRASP_EXPORT ConfigurationGraph {
   std::size_t layers() const { return alive_.size(); }
 
   struct Path {
-    double cost = std::numeric_limits<double>::infinity();
+    double cost = kInfinity;
     std::vector<int> vertices;  ///< One a layer; empty when there is none.
   };
   /// Says whether a vertex or an edge may stay. Asked once of each that could be part of the cheapest path to some

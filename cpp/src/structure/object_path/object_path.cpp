@@ -7,8 +7,8 @@
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "structure/object_path/attached_object.hpp"
 #include "structure/object_path/configuration_graph.hpp"
-#include "structure/object_path/held_object.hpp"
 #include "structure/object_path/path_configurations.hpp"
 
 namespace mmgrasp {
@@ -81,7 +81,7 @@ void ObjectPathOptions::check() const {
 struct ObjectPathEvaluator::Impl {
   ObjectPathProblem problem;
   ObjectPathOptions options;
-  detail::HeldObject held{problem};
+  detail::AttachedObject held{problem};
   EdgeOptions edge;
   std::map<const JointGroup*, detail::PathConfigurations> solvers;  ///< For each opening of the fingers.
   const JointGroup* group = nullptr;
@@ -306,7 +306,7 @@ ObjectPathResult ObjectPathEvaluator::evaluate(const Grasp& grasp) {
   const auto stays_near = [&](std::size_t i, int a, int b) {
     return own.stays_near(i, found.q[i].col(a), found.q[i + 1].col(b), T_hand_object);
   };
-  // Neighbours on a grid often leave the path half way: looked at on the way, not one path after the other.
+  // Neighbours on a grid often leave the path half way: checked on the way, not one path after the other.
   const ConfigurationGraph::Check check{
       [&](std::size_t i, int vertex) { return own.is_free(found, i, vertex, result); },
       [&](std::size_t i, int a, int b) {

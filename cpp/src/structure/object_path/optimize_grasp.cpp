@@ -87,7 +87,7 @@ GraspOptimum optimize_grasp(const ObjectPathProblem& problem, const Pipe& pipe, 
   PopulationProblem search;
   search.variables = grasps.variables();
   search.upper = [&](const Eigen::VectorXd& x, int i) {
-    return i == 1 ? grasps.room(static_cast<int>(x(0))) : std::numeric_limits<double>::infinity();
+    return i == 1 ? grasps.room(static_cast<int>(x(0))) : detail::kInfinity;
   };
   search.neighbour = [&](const Eigen::VectorXd& x, double size, Rng& rng) {
     return grasps.neighbour(x, size, options.neighbourhood, rng);

@@ -13,7 +13,7 @@ namespace {
 constexpr int kHeadings = 16;
 constexpr int kPortals = 15;  // Poses before and behind each end on its own heading line.
 constexpr std::size_t kMaxExpansions = 400000;
-constexpr std::size_t kProbe = 20000;  // Expansions after which the other end is looked at, with as many.
+constexpr std::size_t kProbe = 20000;  // Expansions after which the other end is searched from, with as many.
 
 /// Drives that end on lattice points again, one a heading, counterclockwise.
 constexpr std::array<std::array<int, 2>, kHeadings> kDrives = {{{1, 0},

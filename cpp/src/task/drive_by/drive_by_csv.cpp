@@ -1,4 +1,4 @@
-// drive_by_csv(): the trajectory as text, with the tasks and what is held.
+// drive_by_csv(): the trajectory as text, with the tasks and what is attached.
 #include <cmath>
 
 #include "mmgrasp/core/error.hpp"
@@ -27,14 +27,14 @@ std::string drive_by_csv(const DriveByResult& result, int between) {
     const std::size_t end = plain.find('\n', from);
     text.append(plain, from, end - from);
     from = end + 1;
-    std::string task, held;
+    std::string task, attached;
     for (std::size_t i = 0; line > 0 && i < result.events.size(); ++i) {
       const DriveByEvent& event = result.events[i];
       if (line - 1 == static_cast<std::size_t>(event.waypoint) * static_cast<std::size_t>(between + 1))
         task = std::to_string(i);
-      if (!event.object.empty() && times[line - 1] >= event.held_time) held = event.object;
+      if (!event.object.empty() && times[line - 1] >= event.attach_time) attached = event.object;
     }
-    text += line == 0 ? ",task,held" : "," + task + "," + quoted(held);
+    text += line == 0 ? ",task,attached" : "," + task + "," + quoted(attached);
     text += '\n';
   }
   return text;

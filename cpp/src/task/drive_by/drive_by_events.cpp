@@ -42,7 +42,7 @@ std::vector<DriveByEvent> events_of(const WholeBodyTrajectory& t, const World& w
       e.object = steps[i].object;
       const Pose& T_world_object = world.objects().at(e.object).T_world_object;
       e.T_tip_object = attached_pose(steps[i], t.group().fk(t.positions()[at]), T_world_object);
-      e.held_time = t.times()[at + (steps[i].dwell > 0 ? dwell_intervals(steps[i].dwell) : 0)];
+      e.attach_time = t.times()[at + (steps[i].dwell > 0 ? dwell_intervals(steps[i].dwell) : 0)];
     }
     e.candidate = sequence[i].candidate;
     e.base_speed = t.group().has_base() ? rate.head<2>().norm() : 0;

@@ -18,7 +18,7 @@ RobotMotion drive_by_motion(const DriveByResult& result, const std::vector<doubl
     if (event.object.empty()) continue;
     GripperEvent closing;
     closing.time = event.close_time;
-    closing.duration = std::max(0.0, std::max(event.held_time, event.time) - event.close_time);
+    closing.duration = std::max(0.0, std::max(event.attach_time, event.time) - event.close_time);
     closing.object = event.object;
     if (motion.gripper.size() < openings.size()) closing.opening = openings[motion.gripper.size()];
     motion.gripper.push_back(closing);

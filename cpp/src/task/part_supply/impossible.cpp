@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kTolerance = 1e-3;  // [m] More than inverse kinematics may miss a pose by.
 
-/// A ball that holds the tool in every arm configuration: around the first joint of the arm, seen from the base.
+/// A sphere that holds the tool in every arm configuration: around the first joint of the arm, seen from the base.
 struct Reach {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   double radius = 0;

@@ -137,7 +137,7 @@ class PartSupply {
   }
 
   /// When no motion is found at a stop, other stops are sought without the base poses that failed, as long as they are
-  /// no more: the proof is that of the regions. What is told in the end is why the first ones failed.
+  /// no more: the proof is that of the regions. What is reported in the end is why the first ones failed.
   bool plan_picks_and_route_somewhere() {
     PartSupplyPlan first;
     std::vector<BaseRegion> left;

@@ -23,7 +23,7 @@ constexpr int kMotionTries = 12;         // Grasp configurations that may reach 
 constexpr std::size_t kReleases = 6;     // Goals of a transfer.
 constexpr double kLineDeviation = 2e-4;  // Blending of straight tool motions [rad]: the tool stays on its line.
 constexpr double kEdgeStep = 0.02;
-// States per second of motion_time_limit: so few that this budget ends a search before the clock does.
+// States per second of motion_time_limit: so few that this budget ends a search before the time limit does.
 constexpr double kStatesPerSecond = 2000;
 constexpr double kMaxStates = 1e8;
 constexpr double kTimedStep = 0.01;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mmgrasp/core/detail/numbers.hpp"
+
 namespace mmgrasp::verify::detail {
 namespace {
 
@@ -99,7 +101,8 @@ Eigen::VectorXd GraspSearch::random_arm() {
   Eigen::VectorXd arm(kinematics.arm_size());
   for (Eigen::Index j = 0; j < arm.size(); ++j) {
     const bool bounded = std::isfinite(kinematics.lower()[j]) && std::isfinite(kinematics.upper()[j]);
-    arm[j] = bounded ? rng_.uniform(kinematics.lower()[j], kinematics.upper()[j]) : rng_.uniform(-M_PI, M_PI);
+    arm[j] = bounded ? rng_.uniform(kinematics.lower()[j], kinematics.upper()[j])
+                     : rng_.uniform(-mmgrasp::detail::kPi, mmgrasp::detail::kPi);
   }
   return arm;
 }

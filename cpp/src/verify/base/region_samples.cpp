@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/parallel.hpp"
 #include "verify/base/grasp_search.hpp"
 #include "verify/context.hpp"
@@ -147,7 +148,7 @@ class RegionCheck {
     std::vector<Eigen::Vector3d> poses;
     for (int i = 0; i < count; ++i) {
       const double radius = std::sqrt(rng_.uniform(least * least, stop.radius * stop.radius));
-      const double angle = rng_.uniform(-M_PI, M_PI);
+      const double angle = rng_.uniform(-mmgrasp::detail::kPi, mmgrasp::detail::kPi);
       poses.push_back(stop.pose + radius * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0));
     }
     const int good = serving(poses, parts, kClaimed * count);
@@ -164,7 +165,7 @@ class RegionCheck {
     return check_workspace(plan_, pose, 0, "", none) && search_.serves(pose, parts, thoroughly);
   }
 
-  /// How many of the poses serve, up to `needed`: as long as these are missing, a pose that seems lost is looked at
+  /// How many of the poses serve, up to `needed`: as long as these are missing, a pose that seems lost is checked
   /// again with more tries, since a search by samples may miss a grasp that is there.
   int serving(const std::vector<Eigen::Vector3d>& poses, const std::vector<int>& parts, double needed) {
     std::vector<Eigen::Vector3d> lost;

@@ -48,7 +48,7 @@ class Maximal {
     sets_.push_back(set);
   }
   const std::vector<RegionBits>& sets() const { return sets_; }
-  double compared() const { return compared_; }  ///< How many sets were looked at so far.
+  double compared() const { return compared_; }  ///< How many sets were checked so far.
 
  private:
   std::vector<RegionBits> sets_;

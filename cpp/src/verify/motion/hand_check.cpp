@@ -15,7 +15,7 @@ bool HandCheck::collides(const Eigen::VectorXd& arm, double opening, const std::
   const Touch touch = judge_.touch(arm, opening);
   if (!touch) return false;
   const char* code = touch.kind == TouchKind::self       ? "self-collision"
-                     : touch.kind == TouchKind::attached ? "held-collision"
+                     : touch.kind == TouchKind::attached ? "attached-collision"
                                                          : "scene-collision";
   faults_.push_back({code, where, "'" + touch.a + "' touches '" + touch.b + "'"});
   return true;

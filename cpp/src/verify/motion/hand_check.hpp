@@ -6,17 +6,17 @@
 
 namespace mmgrasp::verify::detail {
 
-/// What robot, hand and held part meet, for motions of the arm alone and of base and arm.
+/// What robot, hand and attached part meet, for motions of the arm alone and of base and arm.
 class HandCheck {
  public:
   HandCheck(const Context& context, Judge& judge, Faults& faults) : context_(context), judge_(judge), faults_(faults) {}
 
-  /// "self-collision", "held-collision", "scene-collision"; true when a fault was added.
+  /// "self-collision", "attached-collision", "scene-collision"; true when a fault was added.
   bool collides(const Eigen::VectorXd& arm, double opening, const std::string& where);
   /// Fingers moving with the arm at rest.
   void check_fingers(const Eigen::VectorXd& arm, double from, double to, const std::string& where);
-  /// "grasp-empty": two fingers must meet the held part at once, at the grasp's width or somewhat below it: collision
-  /// shapes may stand back a little from the pads that the width is meant for. Otherwise nothing is held.
+  /// "grasp-empty": two fingers must meet the attached part at once, at the grasp's width or somewhat below it:
+  /// collision shapes may stand back a little from the pads that the width is meant for. Otherwise nothing is held.
   void check_grip(const Eigen::VectorXd& arm, double width, const std::string& where);
 
  private:

@@ -11,10 +11,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <variant>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/geometry/shape.hpp"
 
@@ -159,7 +159,7 @@ std::vector<Solid> make_solids(const std::vector<LinkShape>& shapes) {
 
 Bounds bounds_at(const Solid& solid, const Pose& T) {
   if (solid.unbounded) {
-    const Eigen::Vector3d far = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
+    const Eigen::Vector3d far = Eigen::Vector3d::Constant(mmgrasp::detail::kInfinity);
     return {-far, far};
   }
   const Eigen::Vector3d centre = T * solid.local.center();
@@ -177,7 +177,7 @@ bool touches(const Solid& a, const Pose& T_a, const Solid& b, const Pose& T_b) {
 double radius_of(const std::vector<Solid>& solids) {
   double radius = 0;
   for (const Solid& solid : solids) {
-    if (solid.unbounded) return std::numeric_limits<double>::infinity();
+    if (solid.unbounded) return mmgrasp::detail::kInfinity;
     const Eigen::Vector3d centre = solid.T_body_shape * solid.local.center();
     radius = std::max(radius, centre.norm() + 0.5 * solid.local.diagonal().norm());
   }
@@ -185,7 +185,7 @@ double radius_of(const std::vector<Solid>& solids) {
 }
 
 double lowest_z(const std::vector<LinkShape>& shapes, const Pose& T_world_body) {
-  double lowest = std::numeric_limits<double>::infinity();
+  double lowest = mmgrasp::detail::kInfinity;
   for (const LinkShape& item : shapes) {
     const Pose T = T_world_body * item.T_link_shape;
     const Eigen::Vector3d up = T.linear().row(2);  // world z in the shape's axes
@@ -197,14 +197,14 @@ double lowest_z(const std::vector<LinkShape>& shapes, const Pose& T_world_body) 
                        [&](const Sphere& s) { return z - s.radius; },
                        [&](const Cylinder& s) { return z - 0.5 * s.length * std::abs(up.z()) - s.radius * side; },
                        [&](const Capsule& s) { return z - 0.5 * s.length * std::abs(up.z()) - s.radius; },
-                       [&](const Plane&) { return -std::numeric_limits<double>::infinity(); },
+                       [&](const Plane&) { return -mmgrasp::detail::kInfinity; },
                        [&](const MeshShape& s) {
-                         double least = std::numeric_limits<double>::infinity();
+                         double least = mmgrasp::detail::kInfinity;
                          for (const Eigen::Vector3d& v : s.mesh->vertices) least = std::min(least, z + up.dot(v));
                          return least;
                        },
                        [&](const Voxels& s) {
-                         double least = std::numeric_limits<double>::infinity();
+                         double least = mmgrasp::detail::kInfinity;
                          for (const Eigen::Vector3d& c : *s.centres) least = std::min(least, z + up.dot(c));
                          return least - 0.5 * s.resolution * up.cwiseAbs().sum();
                        },

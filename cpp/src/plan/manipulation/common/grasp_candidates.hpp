@@ -46,7 +46,7 @@ class GraspCandidates {
   /// A lower bound on paths between the arm postures found, with any grasp: straight lines of those found, grasp costs
   /// of those not yet checked.
   double least_cost() const;
-  /// A lower bound on paths that begin or end in an arm posture which was not looked at; infinite when all were.
+  /// A lower bound on paths that begin or end in an arm posture which was not checked; infinite when all were.
   double least_cost_elsewhere() const { return least_cost_elsewhere_; }
 
   /// What touches at the start (or goal) with the first grasp that reports a collision there; empty when none does.

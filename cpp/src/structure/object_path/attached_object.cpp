@@ -1,8 +1,8 @@
-#include "structure/object_path/held_object.hpp"
+#include "structure/object_path/attached_object.hpp"
 
 namespace mmgrasp::detail {
 
-AttachedChecker& HeldObject::hold(const Grasp& grasp) {
+AttachedChecker& AttachedObject::hold(const Grasp& grasp) {
   const bool fingers = problem_.gripper.has_value();
   const auto key = fingers ? std::pair(grasp.opening, grasp.posture) : std::pair(0.0, std::vector<double>{});
   auto at = holding_.find(key);
@@ -19,7 +19,7 @@ AttachedChecker& HeldObject::hold(const Grasp& grasp) {
   return now_->second;
 }
 
-const Eigen::VectorXd& HeldObject::levers() {
+const Eigen::VectorXd& AttachedObject::levers() {
   return now_->second.motion_bounds();
 }
 

@@ -12,9 +12,9 @@ namespace mmgrasp::detail {
 
 /// The object of a path in the hand, as each grasp in turn holds it: a checker for each opening of the fingers, in
 /// which only the object's place changes.
-class HeldObject {
+class AttachedObject {
  public:
-  explicit HeldObject(const ObjectPathProblem& problem) : problem_(problem) {}
+  explicit AttachedObject(const ObjectPathProblem& problem) : problem_(problem) {}
 
   AttachedChecker& hold(const Grasp& grasp);
   /// With the fingers of the last grasp held.

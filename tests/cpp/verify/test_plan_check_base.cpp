@@ -293,7 +293,7 @@ TEST(PlanCheckRoute, LegThatEndsElsewhere) {
 TEST(PlanCheckFigures, WhatDescribesMustNotLie) {
   PlanToCheck good = good_plan();
   // 1.4 m; 3 m with two quarter turns; 1.4 m, each piece from rest to rest at full speed.
-  const BaseLimits& limits = good.robot.base_limits;
+  const mmgrasp::BaseLimits& limits = good.robot.base_limits;
   const auto drive = [&](double way) {
     return way / limits.linear_velocity + limits.linear_velocity / limits.linear_acceleration;
   };

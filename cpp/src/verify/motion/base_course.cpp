@@ -6,8 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "verify/motion/motion_limits.hpp"
-
 namespace mmgrasp::verify::detail {
 namespace {
 
@@ -86,6 +84,30 @@ void check_limits(const PlanToCheck& plan, const CheckedMotion& motion, const st
   }
 }
 
+/// Stored accelerations lie between those by which the velocities change before and after.
+void check_accelerations(const PlanToCheck& plan, const CheckedMotion& motion, const std::string& where,
+                         Faults& faults) {
+  const BaseLimits& limits = plan.robot.base_limits;
+  // Along x and y a turning platform's acceleration has a share of speed times turning rate.
+  const double most = limits.linear_acceleration + limits.linear_velocity * limits.angular_velocity;
+  const Vector3d slack = kFitSlack * Vector3d(most, most, limits.angular_acceleration);
+  const std::size_t last = motion.times.size() - 1;
+  const auto mean = [&](std::size_t i) {
+    return Vector3d((motion.velocities[i + 1] - motion.velocities[i]).head<3>() /
+                    (motion.times[i + 1] - motion.times[i]));
+  };
+  for (std::size_t i = 0; i <= last; ++i) {
+    const Vector3d before = mean(i > 0 ? i - 1 : 0), after = mean(std::min(i, last - 1));
+    const Vector3d said = motion.accelerations[i].head<3>();
+    const Vector3d low = before.cwiseMin(after) - slack, high = before.cwiseMax(after) + slack;
+    if ((said.array() >= low.array() && said.array() <= high.array()).all()) continue;
+    faults.push_back({"acceleration", where + ", t = " + text(motion.times[i]) + " s",
+                      "the stored acceleration of the base is " + text(said) + ", its velocities change by " +
+                          text(before) + " before and " + text(after) + " after"});
+    return;
+  }
+}
+
 }  // namespace
 
 void check_base_course(const PlanToCheck& plan, const CheckedMotion& motion, const std::string& where, Faults& faults) {
@@ -94,13 +116,7 @@ void check_base_course(const PlanToCheck& plan, const CheckedMotion& motion, con
   for (std::size_t i = 0; i < motion.times.size(); ++i)
     drive.push_back(drive_of(base, motion.positions[i], motion.velocities[i]));
   check_limits(plan, motion, drive, where, faults);
-  if (!motion.accelerations.empty()) {
-    const BaseLimits& limits = plan.robot.base_limits;
-    // Along x and y a turning platform's acceleration has a share of speed times turning rate.
-    const double most = limits.linear_acceleration + limits.linear_velocity * limits.angular_velocity;
-    check_accelerations_fit(motion, Vector3d(most, most, limits.angular_acceleration), {"x", "y", "theta"}, where,
-                            faults);
-  }
+  if (!motion.accelerations.empty()) check_accelerations(plan, motion, where, faults);
   Vector3d pose = motion.positions.front().head<3>();
   for (std::size_t i = 0; i < drive.size(); ++i) {
     const double t = motion.times[i];

@@ -46,6 +46,32 @@ void report(const Worst& worst, const char* code, const char* quantity, const ch
                         text(worst.value) + ", the limit " + text(worst.bound) + " " + unit});
 }
 
+/// What the velocities change by between samples lies between the stored accelerations there.
+void check_accelerations_fit(const Context& context, const CheckedMotion& motion, const std::string& where,
+                             Faults& faults) {
+  const std::vector<double>& limits = context.plan.acceleration_limits;
+  Worst worst;
+  std::size_t off = 0, all = 0;
+  for (std::size_t i = 0; i + 1 < motion.times.size(); ++i) {
+    const double h = motion.times[i + 1] - motion.times[i];
+    for (std::size_t j = 0; j < limits.size(); ++j) {
+      const double mean = (motion.velocities[i + 1][j] - motion.velocities[i][j]) / h;
+      const double a = motion.accelerations[i][j], b = motion.accelerations[i + 1][j];
+      const double beyond = std::max({std::min(a, b) - mean, mean - std::max(a, b), 0.0}) - kRateRounding / h;
+      worst.see(beyond / limits[j], beyond, limits[j], static_cast<int>(j), motion.times[i]);
+      off += beyond > kFitSlack * limits[j];
+      ++all;
+    }
+  }
+  if (worst.joint < 0 ||
+      (worst.excess <= kMostOff && static_cast<double>(off) <= 2 + kShareOff * static_cast<double>(all)))
+    return;
+  faults.push_back({"acceleration", where + ", t = " + text(worst.time) + " s",
+                    "the stored accelerations are not those of the velocities at " + std::to_string(off) + " of " +
+                        std::to_string(all) + " places; the acceleration of '" + context.plan.arm_joints[worst.joint] +
+                        "' is off by " + text(worst.value)});
+}
+
 /// The accelerations a plan stores besides: as many as samples, within the limits, and those that the velocities
 /// change by.
 void check_stored_accelerations(const Context& context, const CheckedMotion& motion, const std::string& where,
@@ -64,36 +90,10 @@ void check_stored_accelerations(const Context& context, const CheckedMotion& mot
                       "the stored accelerations must be one a sample and joint, each within the acceleration limits"});
     return;
   }
-  check_accelerations_fit(motion,
-                          Eigen::Map<const Eigen::VectorXd>(limits.data(), static_cast<Eigen::Index>(limits.size())),
-                          context.plan.arm_joints, where, faults);
+  check_accelerations_fit(context, motion, where, faults);
 }
 
 }  // namespace
-
-void check_accelerations_fit(const CheckedMotion& motion, const Eigen::VectorXd& limits,
-                             const std::vector<std::string>& names, const std::string& where, Faults& faults) {
-  Worst worst;
-  std::size_t off = 0, all = 0;
-  for (std::size_t i = 0; i + 1 < motion.times.size(); ++i) {
-    const double h = motion.times[i + 1] - motion.times[i];
-    for (Eigen::Index j = 0; j < limits.size(); ++j) {
-      const double mean = (motion.velocities[i + 1][j] - motion.velocities[i][j]) / h;
-      const double a = motion.accelerations[i][j], b = motion.accelerations[i + 1][j];
-      const double beyond = std::max({std::min(a, b) - mean, mean - std::max(a, b), 0.0}) - kRateRounding / h;
-      worst.see(beyond / limits[j], beyond, limits[j], static_cast<int>(j), motion.times[i]);
-      off += beyond > kFitSlack * limits[j];
-      ++all;
-    }
-  }
-  if (worst.joint < 0 ||
-      (worst.excess <= kMostOff && static_cast<double>(off) <= 2 + kShareOff * static_cast<double>(all)))
-    return;
-  faults.push_back({"acceleration", where + ", t = " + text(worst.time) + " s",
-                    "the stored accelerations are not those of the velocities at " + std::to_string(off) + " of " +
-                        std::to_string(all) + " places; the acceleration of '" + names[worst.joint] + "' is off by " +
-                        text(worst.value)});
-}
 
 bool check_motion_shape(const CheckedMotion& motion, int joints, const std::string& where, Faults& faults) {
   const std::size_t samples = motion.times.size();

@@ -14,8 +14,4 @@ bool check_motion_shape(const CheckedMotion& motion, int joints, const std::stri
 void check_motion_limits(const Context& context, const Kinematics& kinematics, const CheckedMotion& motion,
                          const std::string& where, Faults& faults);
 
-/// "acceleration": what the velocities change by between samples lies between the stored accelerations there.
-void check_accelerations_fit(const CheckedMotion& motion, const Eigen::VectorXd& limits,
-                             const std::vector<std::string>& names, const std::string& where, Faults& faults);
-
 }  // namespace mmgrasp::verify::detail

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
+#include <string>
 #include <vector>
 
 namespace mmgrasp::verify::detail {
@@ -12,7 +12,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kSlack = 0.01;      // Relative, of limits.
-constexpr double kFitSlack = 0.05;   // Of the limit: stored accelerations of x, y, theta against the velocities.
+constexpr double kFitSlack = 0.05;   // Of the limit: stored accelerations against the velocities.
 constexpr double kOffCourse = 1e-3;  // After the whole motion [m], [rad].
 constexpr double kSideways = 1e-3;   // [m/s]
 
@@ -84,27 +84,31 @@ void check_limits(const PlanToCheck& plan, const CheckedMotion& motion, const st
   }
 }
 
-/// Stored accelerations lie between those by which the velocities change before and after.
+/// Stored accelerations of base and arm lie between those by which the velocities change before and after.
 void check_accelerations(const PlanToCheck& plan, const CheckedMotion& motion, const std::string& where,
                          Faults& faults) {
-  const BaseLimits& limits = plan.robot.base_limits;
+  const BaseLimits& base = plan.robot.base_limits;
   // Along x and y a turning platform's acceleration has a share of speed times turning rate.
-  const double most = limits.linear_acceleration + limits.linear_velocity * limits.angular_velocity;
-  const Vector3d slack = kFitSlack * Vector3d(most, most, limits.angular_acceleration);
+  const double most = base.linear_acceleration + base.linear_velocity * base.angular_velocity;
+  std::vector<double> limits{most, most, base.angular_acceleration};
+  limits.insert(limits.end(), plan.acceleration_limits.begin(), plan.acceleration_limits.end());
   const std::size_t last = motion.times.size() - 1;
-  const auto mean = [&](std::size_t i) {
-    return Vector3d((motion.velocities[i + 1] - motion.velocities[i]).head<3>() /
-                    (motion.times[i + 1] - motion.times[i]));
+  const auto mean = [&](std::size_t i, Eigen::Index j) {
+    return (motion.velocities[i + 1][j] - motion.velocities[i][j]) / (motion.times[i + 1] - motion.times[i]);
   };
   for (std::size_t i = 0; i <= last; ++i) {
-    const Vector3d before = mean(i > 0 ? i - 1 : 0), after = mean(std::min(i, last - 1));
-    const Vector3d said = motion.accelerations[i].head<3>();
-    const Vector3d low = before.cwiseMin(after) - slack, high = before.cwiseMax(after) + slack;
-    if ((said.array() >= low.array() && said.array() <= high.array()).all()) continue;
-    faults.push_back({"acceleration", where + ", t = " + text(motion.times[i]) + " s",
-                      "the stored acceleration of the base is " + text(said) + ", its velocities change by " +
-                          text(before) + " before and " + text(after) + " after"});
-    return;
+    for (Eigen::Index j = 0; j < motion.accelerations[i].size(); ++j) {
+      const double before = mean(i > 0 ? i - 1 : 0, j), after = mean(std::min(i, last - 1), j);
+      const double said = motion.accelerations[i][j], slack = kFitSlack * limits[static_cast<std::size_t>(j)];
+      if (said >= std::min(before, after) - slack && said <= std::max(before, after) + slack) continue;
+      static const std::array<std::string, 3> kBase{"x", "y", "theta"};
+      const auto column = static_cast<std::size_t>(j);
+      faults.push_back({"acceleration", where + ", t = " + text(motion.times[i]) + " s",
+                        "the stored acceleration of '" + (column < 3 ? kBase[column] : plan.arm_joints[column - 3]) +
+                            "' is " + text(said) + ", its velocity changes by " + text(before) + " before and " +
+                            text(after) + " after"});
+      return;
+    }
   }
 }
 
@@ -116,7 +120,7 @@ void check_base_course(const PlanToCheck& plan, const CheckedMotion& motion, con
   for (std::size_t i = 0; i < motion.times.size(); ++i)
     drive.push_back(drive_of(base, motion.positions[i], motion.velocities[i]));
   check_limits(plan, motion, drive, where, faults);
-  if (!motion.accelerations.empty()) check_accelerations(plan, motion, where, faults);
+  if (motion.accelerations.size() == motion.times.size()) check_accelerations(plan, motion, where, faults);
   Vector3d pose = motion.positions.front().head<3>();
   for (std::size_t i = 0; i < drive.size(); ++i) {
     const double t = motion.times[i];

@@ -93,6 +93,28 @@ TEST(DriveByCheck, ABaseThatDoesNotGoWhereItsVelocitiesLead) {
   EXPECT_TRUE(codes_of(drawn).count("base-off-course"));
 }
 
+TEST(DriveByCheck, AccelerationsAreThoseOfTheVelocities) {
+  PlanToCheck good = passing_plan();
+  CheckedMotion& motion = good.drive_by[0].motion;
+  for (std::size_t i = 0; i + 1 < motion.times.size(); ++i)
+    motion.accelerations.push_back((motion.velocities[i + 1] - motion.velocities[i]) /
+                                   (motion.times[i + 1] - motion.times[i]));
+  motion.accelerations.push_back(motion.accelerations.back());
+  EXPECT_EQ(codes_of(good), Codes{});
+  for (const int column : {0, 2, 5}) {
+    PlanToCheck lie = good;
+    lie.drive_by[0].motion.accelerations[50][column] += 0.4;
+    EXPECT_EQ(codes_of(lie), Codes{"acceleration"}) << column;
+    for (VectorXd& a : lie.drive_by[0].motion.accelerations) a[column] = 0.4;
+    EXPECT_EQ(codes_of(lie), Codes{"acceleration"}) << column;
+  }
+  PlanToCheck lie = good;
+  lie.drive_by[0].motion.velocities[50][5] += 0.05;
+  EXPECT_TRUE(codes_of(lie).count("acceleration"));
+  good.drive_by[0].motion.accelerations.pop_back();
+  EXPECT_TRUE(codes_of(good).count("acceleration"));
+}
+
 TEST(DriveByCheck, ACurveIsDrivenAsTheWheelsLead) {
   // A quarter circle with linear velocities: exact at any sampling, so that nothing may be said of it.
   PlanToCheck plan = passing_plan();

@@ -84,7 +84,8 @@ void check_limits(const PlanToCheck& plan, const CheckedMotion& motion, const st
   }
 }
 
-/// Stored accelerations of base and arm lie between those by which the velocities change before and after.
+/// Stored accelerations of base and arm lie between those by which the velocities change before and after, and these
+/// between the stored ones.
 void check_accelerations(const PlanToCheck& plan, const CheckedMotion& motion, const std::string& where,
                          Faults& faults) {
   const BaseLimits& base = plan.robot.base_limits;
@@ -96,13 +97,17 @@ void check_accelerations(const PlanToCheck& plan, const CheckedMotion& motion, c
   const auto mean = [&](std::size_t i, Eigen::Index j) {
     return (motion.velocities[i + 1][j] - motion.velocities[i][j]) / (motion.times[i + 1] - motion.times[i]);
   };
+  const auto between = [](double value, double a, double b, double slack) {
+    return value >= std::min(a, b) - slack && value <= std::max(a, b) + slack;  // false for NaN
+  };
   for (std::size_t i = 0; i <= last; ++i) {
     for (Eigen::Index j = 0; j < motion.accelerations[i].size(); ++j) {
-      const double before = mean(i > 0 ? i - 1 : 0, j), after = mean(std::min(i, last - 1), j);
-      const double said = motion.accelerations[i][j], slack = kFitSlack * limits[static_cast<std::size_t>(j)];
-      if (said >= std::min(before, after) - slack && said <= std::max(before, after) + slack) continue;
-      static const std::array<std::string, 3> kBase{"x", "y", "theta"};
       const auto column = static_cast<std::size_t>(j);
+      const double before = mean(i > 0 ? i - 1 : 0, j), after = mean(std::min(i, last - 1), j);
+      const double said = motion.accelerations[i][j], next = motion.accelerations[std::min(i + 1, last)][j];
+      const double slack = kFitSlack * limits[column];
+      if (between(said, before, after, slack) && (i == last || between(after, said, next, slack))) continue;
+      static const std::array<std::string, 3> kBase{"x", "y", "theta"};
       faults.push_back({"acceleration", where + ", t = " + text(motion.times[i]) + " s",
                         "the stored acceleration of '" + (column < 3 ? kBase[column] : plan.arm_joints[column - 3]) +
                             "' is " + text(said) + ", its velocity changes by " + text(before) + " before and " +

@@ -72,7 +72,12 @@ def full_scenario(small: dict[str, Any]) -> dict[str, Any]:
     """A scenario with what else may stand in one: all options, extra links, lists of parts and grasps."""
     scenario = copy.deepcopy(small)
     scenario["robot"]["frames"] = [
-        {"name": "lamp", "parent": "base_link", "pose": {"xyz": [0.0, 0.1, 0.3], "rpy": [0.1, 0.0, 0.0]}, "sphere": 0.02}
+        {
+            "name": "lamp",
+            "parent": "base_link",
+            "pose": {"xyz": [0.0, 0.1, 0.3], "rpy": [0.1, 0.0, 0.0]},
+            "sphere": 0.02,
+        }
     ]
     scenario["robot"]["base_limits"] = BASE_LIMITS
     scenario["gripper"].update(closing_speed=0.12, clearance=0.012)

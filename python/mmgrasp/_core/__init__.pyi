@@ -6191,7 +6191,7 @@ def fit_cuboids(points: numpy.typing.ArrayLike, *, T_world_tray: numpy.typing.Ar
         min_points: int = 60  # smaller clusters are left out
         plane_iterations: int = 1000  # random planes tried
     """
-def fit_primitives(mesh: Mesh, labels: numpy.typing.ArrayLike) -> list[FittedPrimitive]:
+def fit_primitives(mesh: Mesh, labels: numpy.typing.ArrayLike, *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None) -> list[FittedPrimitive]:
     """
     The cylinder, box, cone or sphere that stands for each segment of a mesh: the one whose volume is closest to that of
     the segment's convex hull, of those with surface on them (P1, section 5.2.2). `labels` (m,): the segment of each face, as

@@ -1,8 +1,8 @@
 // Finds the least number of stops again from the regions of the plan.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "verify/base/floor.hpp"
 #include "verify/base/shared_discs.hpp"
 #include "verify/base/smallest_cover.hpp"
@@ -103,7 +103,7 @@ class StopsCheck {
            "radius " + text(stop.radius) + " m is below the positioning uncertainty " + text(needed) + " m"});
     }
     const double wanted = std::max(stop.radius, needed);
-    double least_room = std::numeric_limits<double>::infinity();
+    double least_room = mmgrasp::detail::kInfinity;
     RegionSet holding;
     for (int region = 0; region < floor_.regions(); ++region) {
       if (clearance(region, layer, stop, needed) >= needed - kRadiusSlack - kRounding) holding.insert(region);
@@ -154,7 +154,7 @@ class StopsCheck {
     const CheckedIntersection& said = plan_.intersections[index];
     const int layer = std::isfinite(said.heading) ? floor_.layer(said.heading) : -1;
     bool good = layer >= 0 && said.centre.allFinite() && said.radius >= 0 && std::isfinite(said.radius);
-    double room = std::numeric_limits<double>::infinity();
+    double room = mmgrasp::detail::kInfinity;
     for (std::size_t i = 0; good && i < said.trays.size(); ++i) {
       const auto region = region_of_tray_.find(said.trays[i]);
       good = region != region_of_tray_.end();

@@ -18,6 +18,7 @@ import yaml
 import mmgrasp as mg
 from field_changes import Harmless, report, try_out
 from mmgrasp import _core
+from mmgrasp._files import ASSETS
 from mmgrasp.part_supply.plan_writer import scenario_to_dict
 from mmgrasp.part_supply.verification import differences
 
@@ -124,9 +125,8 @@ def tells(scenario: dict[str, Any], folder: Path) -> Callable[[dict[str, Any]], 
 
 
 def main() -> int:
-    of_each = int(sys.argv[1]) if len(sys.argv) > 1 else 2
-    storeroom = Path(mg.__file__).parent / "assets" / "scenarios" / "storeroom.yaml"
-    scenario = yaml.safe_load(storeroom.read_text())
+    of_each = int(sys.argv[1]) if len(sys.argv) > 1 else 1
+    scenario = yaml.safe_load((ASSETS / "scenarios" / "storeroom.yaml").read_text())
     del scenario["trays"][1:]
     scenario = full_scenario(scenario)
     with tempfile.TemporaryDirectory() as folder:

@@ -30,7 +30,7 @@ def test_changes_of_a_plan_are_refused(small_plan: mg.part_supply.ScenarioPlan, 
     result = try_out(plan, refused, of_each=1, every=7)
     assert result.tried > 250
     assert not unexplained(result, plan_mutations.HARMLESS)
-    assert len(result.left) <= 0.05 * result.tried  # of one field a pattern; all fields: below 2 %
+    assert len(result.left) <= 0.05 * result.tried  # of all: below 2 %
 
 
 @pytest.mark.slow

@@ -12,6 +12,7 @@ from pathlib import Path
 from ._core import IoError
 
 ASSETS = Path(__file__).parent / "assets"
+LARGEST_FILE = 4_000_000_000  # of a mesh or any other part of a robot [bytes], as in C++
 SCHEMAS = Path(__file__).parent / "schemas"
 
 
@@ -72,8 +73,8 @@ def _target(path: Path) -> Path:
 
 
 def write_file(path: Path, content: str | bytes) -> None:
-    """Writes all or nothing: a reader never sees half a file. Of a link the file is replaced that it leads to."""
-    data = content.encode() if isinstance(content, str) else content
+    """Writes all or nothing: a reader never sees half a file. Of a link the file is replaced that it leads to. What has no UTF-8 (of a path's name, say) is written as escapes."""
+    data = content.encode(errors="backslashreplace") if isinstance(content, str) else content
     target = _target(path)
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
@@ -141,7 +142,5 @@ def printable(text: str) -> str:
 
 
 def sha256_of(path: str | Path) -> str:
-    try:
-        return hashlib.sha256(Path(path).read_bytes()).hexdigest()
-    except OSError as error:
-        raise IoError(f"{path}: cannot be read: {error.strerror or error}") from None
+    """Of a regular file; raises IoError."""
+    return hashlib.sha256(read_bytes(Path(path), LARGEST_FILE)).hexdigest()

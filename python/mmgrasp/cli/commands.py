@@ -131,7 +131,7 @@ def run_check(arguments: argparse.Namespace, console: Console) -> int:
         )
     if arguments.write_srdf is not None:
         write_file(arguments.write_srdf, found.srdf())
-    print(json.dumps(found.to_dict(), indent=1, default=str) if arguments.json else describe(found))
+    print(json.dumps(found.to_dict(), indent=1, default=str) if arguments.json else printable(describe(found)))
     return DONE if found.ok else FAULTY
 
 
@@ -179,7 +179,7 @@ def run_bench(arguments: argparse.Namespace, console: Console) -> int:
     else:
         console.print(bench_table(rows))
         for fault in (fault for row in rows for fault in row["faults"]):
-            console.print(f"- {fault}", markup=False, soft_wrap=True)
+            console.print(printable(f"- {fault}"), markup=False, soft_wrap=True)
     return DONE if holds(results) else FAULTY
 
 

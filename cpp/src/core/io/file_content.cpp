@@ -1,11 +1,10 @@
 #include "mmgrasp/core/detail/file_content.hpp"
 
 #include <fcntl.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <system_error>
@@ -30,6 +29,21 @@ std::filesystem::path link_target(const std::string& path, const std::string& ki
   if (std::filesystem::is_directory(status)) fail("is a folder");
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) fail("is no regular file");
   return target;
+}
+
+/// Makes an empty file of its own: two that write the same file at once must not write into each other's.
+std::string create_beside(const std::filesystem::path& target, const std::string& kind, const std::string& path) {
+  static std::atomic<unsigned> count{0};
+  for (;;) {
+    std::string name = target.string() + "." + std::to_string(::getpid()) + "-" + std::to_string(++count) + ".part";
+    const int handle = ::open(name.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
+    if (handle >= 0) {
+      ::close(handle);
+      return name;
+    }
+    if (errno != EEXIST)
+      throw IoError(kind + " '" + path + "': cannot be written (" + std::generic_category().message(errno) + ")");
+  }
 }
 
 }  // namespace
@@ -57,19 +71,12 @@ std::string file_content(const std::string& path, const std::string& kind, std::
 
 void write_file(const std::string& path, const std::string& kind, std::initializer_list<std::string_view> parts) {
   const std::filesystem::path target = link_target(path, kind);
-  // Two that write the same file at once must not write into each other's.
-  std::string temporary = target.string() + ".XXXXXX";
-  const int handle = ::mkstemp(temporary.data());
+  const std::string temporary = create_beside(target, kind, path);
   const auto fail = [&](const std::string& reason) {
     std::error_code ignored;
-    if (handle >= 0) std::filesystem::remove(temporary, ignored);
+    std::filesystem::remove(temporary, ignored);
     throw IoError(kind + " '" + path + "': cannot be written" + reason);
   };
-  if (handle < 0) fail(" (" + std::generic_category().message(errno) + ")");
-  const mode_t mask = ::umask(0);
-  ::umask(mask);
-  ::fchmod(handle, 0666 & ~mask);
-  ::close(handle);
   std::ofstream file(temporary, std::ios::binary | std::ios::trunc);
   for (const std::string_view part : parts) file.write(part.data(), static_cast<std::streamsize>(part.size()));
   file.close();

@@ -99,7 +99,6 @@ def plan_by_hand() -> dict[str, Any]:
                   {"poses": [[1.0, 1.0, 0.0], [1.0, 1.0, -0.4373], [2.5, 0.3, -0.4373], [2.5, 0.3, 0.0]], "length": 1.655,
                    "turning": 0.875, "duration": 5.0}],
         "picks": picks, "robustness_rate": 1.0, "obstructions": [],
-        "timings": [{"stage": "regions", "seconds": 1.5}, {"stage": "picks", "seconds": 0.5}],
         "premises": {"headings": {"A": [0.0], "B & C": [0.0]}, "shared_headings": True, "positioning_uncertainty": 0.1, "cell": 0.1, "max_distance": 0.0,
                      "grasps": 2, "ik_seeds": 0, "database": {}, "search_finished": True},
     }  # fmt: skip

@@ -44,7 +44,6 @@ def test_texts_that_are_no_plan(tmp_path: Path, text: str, piece: str) -> None:
         ("scenario.gripper.finger_depth", "x"),
         ("scenario.options.seed", None),
         ("scenario.extra", 1),
-        ("timings", 3),
         ("stops.0.intersection", 1.5),
         ("robustness_rate", 1e400),
         ("lost_intersections", {}),

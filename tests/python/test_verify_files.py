@@ -37,6 +37,8 @@ def test_texts_that_are_no_plan(tmp_path: Path, text: str, piece: str) -> None:
 @pytest.mark.parametrize(
     ("path", "value"),
     [
+        ("mmgrasp", "0.1.0x"),
+        ("timings", []),
         ("proven_minimal", "banana"),
         ("regions.0.cells.0.0", 3),
         ("scenario.obstacles.0.pose", {"xyz": [0, 0, 0], "rpy": [0, 0, 0]}),

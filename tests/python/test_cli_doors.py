@@ -147,7 +147,6 @@ def test_a_profile_whose_hand_has_no_such_link(tmp_path: Path, capfd: pytest.Cap
     source = ASSETS / "robots" / "kr6like" / "kr6like.yaml"
     content = yaml.safe_load(source.read_text())
     content["robot"]["tool_link"] = "gripper"
-    content["robot"]["urdf"] = str(source.parent / content["robot"]["urdf"])
     profile.write_text(yaml.safe_dump(content))
     assert main(["grasp", str(tmp_path), "--gripper", str(profile)]) == 2
     message = capfd.readouterr().err

@@ -29,7 +29,6 @@ HARMLESS: Harmless = {
     "options.seed": ("any", "another seed is another search, and any answer is checked"),
     "options.threads": ("any", "plans do not depend on it"),
     "reach.threads": ("any", "databases do not depend on it"),
-    "allowed_collisions": ("doubled", "a pair said twice"),
     "allowed_collisions[]": ("reordered", "a pair has no order"),
     "allowed_collisions[][]": ("swapped", "a pair has no order"),
 }

@@ -167,7 +167,8 @@ py::array_t<double> to_array(const Poses& poses) {
 
 template <typename Vector>
 static py::array_t<double> stack(const std::vector<Vector>& rows) {
-  const py::ssize_t columns = rows.empty() ? 0 : rows.front().size();
+  constexpr py::ssize_t kColumns = std::max<py::ssize_t>(0, Vector::RowsAtCompileTime);  // without rows: as (0, 3)
+  const py::ssize_t columns = rows.empty() ? kColumns : rows.front().size();
   py::array_t<double> out({static_cast<py::ssize_t>(rows.size()), columns});
   for (std::size_t i = 0; i < rows.size(); ++i) {
     std::copy(rows[i].data(), rows[i].data() + columns, out.mutable_data() + i * columns);

@@ -72,7 +72,7 @@ def plan_by_hand() -> dict[str, Any]:
     return {
         "format": "mmgrasp-plan", "version": 3, "mmgrasp": "0.0.0", "outcome": "solved",
         "scenario": {
-            "name": "by hand", "source": "",
+            "name": "by hand", "source": "scenario.yaml",
             "robot": {"urdf": URDF, "srdf": "", "base": "diff_drive", "base_limits": {}, "meshes": []},
             "arm": {"joints": ["lift", "turn"], "tip_link": "tcp", "velocity_limits": [0.2, 1.0], "acceleration_limits": [1, 4]},
             "gripper": {"tool_link": "tcp", "approach": [1, 0, 0], "closing": [0, 1, 0], "max_opening": 0.1, "finger_depth": 0.03,

@@ -23,7 +23,7 @@ from mmgrasp.part_supply.verification import differences
 
 HARMLESS: Harmless = {
     "scenario.name": ("misspelt, other", "a title"),
-    "scenario.source": ("misspelt, emptied, other", "where the scenario was read from: reported, not used"),
+    "scenario.source": ("misspelt, other", "where the scenario was read from: reported, not used"),
     "scenario.options.seed": ("any", "another seed is another search, and any answer is checked"),
     "grid.nx": ("more, less, doubled", "columns of empty cells at the border"),
     "grid.ny": ("more, less, doubled", "rows of empty cells at the border"),

@@ -25,6 +25,7 @@ from .tray_section import PartType, TraySetup, read_part_types, read_tray
 TOP_KEYS = "format version name robot start goal positioning_uncertainty trays"
 TOP_OPTIONAL = "part_types gripper place_region floor obstacles allowed_collisions padding options reach"
 FLOOR = "floor"
+LEAST_SAMPLES = 10_000  # of the database of what the arm reaches
 SHAPE_KEYS = "box cylinder sphere mesh shapes scale"
 
 
@@ -136,6 +137,10 @@ def load_scenario(
     uncertainty = root["positioning_uncertainty"].number(least=0)
     options = _read_options(root, "options", _core._supply_option_table(), {"positioning_uncertainty"})
     reach = _read_options(root, "reach", _core._reach_option_table(), set())
+    if reach.get("samples", LEAST_SAMPLES) < LEAST_SAMPLES:
+        root["reach"]["samples"].fail(
+            f"must be at least {LEAST_SAMPLES}: fewer draws say nothing of what the arm reaches"
+        )
     obstacles = _read_obstacles(root)
     setup = read_setup(choose_sections(root, robot), progress)
     if setup.robot.base == "fixed":

@@ -105,14 +105,15 @@ def read_text(path: Path, most: int) -> str:
 
 def read_bytes(path: Path, most: int) -> bytes:
     """The content of a regular file of at most `most` bytes; raises IoError otherwise."""
-    data = read_head(path, most + 1)
-    if len(data) > most:
-        raise IoError(f"{printable(os.fspath(path))}: cannot be read: is larger than {most} bytes")
-    return data
+    return _read(path, None, most)
 
 
 def read_head(path: Path, count: int) -> bytes:
     """The first `count` bytes of a regular file, or all it has; raises IoError."""
+    return _read(path, count, None)
+
+
+def _read(path: Path, count: int | None, most: int | None) -> bytes:
     shown = printable(os.fspath(path))
     try:
         with open(path, "rb", opener=_open_now) as file:
@@ -121,13 +122,17 @@ def read_head(path: Path, count: int) -> bytes:
                 raise IoError(f"{shown}: cannot be read: is a folder")
             if not stat.S_ISREG(found.st_mode):
                 raise IoError(f"{shown}: cannot be read: is no regular file")
-            return file.read(count)
+            # Not read(most): Python sets aside as much memory as it is asked for.
+            data = file.read(count) if most is None or found.st_size <= most else None
     except OSError as error:
         if isinstance(error, IoError):
             raise
         raise IoError(f"{shown}: cannot be read: {error.strerror or error}") from None
     except ValueError as error:
         raise IoError(f"{shown}: cannot be read: {error}") from None
+    if data is None or (most is not None and len(data) > most):
+        raise IoError(f"{shown}: cannot be read: is larger than {most} bytes")
+    return data
 
 
 def _open_now(path: str, flags: int) -> int:

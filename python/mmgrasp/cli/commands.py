@@ -267,6 +267,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
             "mmgrasp: out of memory: use a coarser grid, larger voxels, fewer samples or fewer parts", file=sys.stderr
         )
         return BAD_INPUT
+    except ImportError as error:  # a library that is broken, or that there is no memory for
+        print(f"mmgrasp: a part of the installation cannot be loaded: {printable(str(error))}", file=sys.stderr)
+        return BAD_INPUT
     except KeyboardInterrupt:
         print("mmgrasp: interrupted", file=sys.stderr)
         return INTERRUPTED

@@ -23,7 +23,9 @@ from .shapes import read_shapes
 from .tray_section import PartType, TraySetup, read_part_types, read_tray
 
 TOP_KEYS = "format version name robot start goal positioning_uncertainty trays"
-TOP_OPTIONAL = "arrival_covariance part_types gripper place_region floor obstacles allowed_collisions padding options reach"
+TOP_OPTIONAL = (
+    "arrival_covariance part_types gripper place_region floor obstacles allowed_collisions padding options reach"
+)
 FLOOR = "floor"
 SHAPE_KEYS = "box cylinder sphere mesh shapes scale"
 

@@ -35,26 +35,27 @@ std::vector<Stop> best_of(std::vector<Stop> stops, const std::vector<StopShare>&
 }  // namespace
 
 StopSamples count_arrivals(const PartSupplyProblem& problem, const BasePoseEvaluator& evaluator,
-                           const std::vector<Stop>& stops, std::size_t samples, const Monitor& monitor) {
+                           const std::vector<Stop>& stops, std::size_t samples, bool chosen, const Monitor& monitor) {
   const Eigen::Matrix3d root = square_root(problem.arrival_covariance);
   const auto arrival = [&root](const Stop& stop, Rng& rng) {
     const double x = rng.normal(), y = rng.normal(), theta = rng.normal();
     return Eigen::Vector3d(stop.pose + root * Eigen::Vector3d(x, y, theta));
   };
-  return sample_base_poses(problem, evaluator, stops, samples, problem.options.seed + 78, true, arrival, monitor);
+  return sample_base_poses(problem, evaluator, stops, samples, problem.options.seed + (chosen ? 79 : 78), true, arrival,
+                           monitor);
 }
 
 void seek_likely_poses(const PartSupplyProblem& problem, const BasePoseEvaluator& evaluator, const BaseGrid& grid,
                        const std::vector<BaseRegion>& regions, std::vector<Stop>& stops, double required_rate,
                        const Monitor& monitor) {
   for (Stop& stop : stops) {
-    std::vector<Stop> places = alternative_base_poses(
-        grid, regions, stop, problem.options.positioning_uncertainty, 1.5 * grid.resolution, kMostPoses);
+    std::vector<Stop> places = alternative_base_poses(grid, regions, stop, problem.options.positioning_uncertainty,
+                                                      1.5 * grid.resolution, kMostPoses);
     places.insert(places.begin(), stop);
-    StopSamples seen = count_arrivals(problem, evaluator, places, kFewArrivals, monitor);
+    StopSamples seen = count_arrivals(problem, evaluator, places, kFewArrivals, false, monitor);
     places = best_of(std::move(places), seen.stops, kFinalists);
     places.insert(places.begin(), stop);  // to be compared by as many arrivals
-    seen = count_arrivals(problem, evaluator, places, kMoreArrivals, monitor);
+    seen = count_arrivals(problem, evaluator, places, kMoreArrivals, false, monitor);
     for (const Stop& place : best_of(places, seen.stops, places.size())) {
       if (monitor.stopped()) return;
       if (place.pose == stop.pose) break;

@@ -124,7 +124,7 @@ class PartSupply {
     if (!arrivals_matter()) return true;
     const StageClock clock(plan_, "arrivals");
     const StopSamples seen =
-        count_arrivals(problem_, *evaluator_, plan_.stops, problem_.options.robustness_samples, monitor_);
+        count_arrivals(problem_, *evaluator_, plan_.stops, problem_.options.robustness_samples, true, monitor_);
     for (std::size_t i = 0; i < plan_.stops.size(); ++i) {
       plan_.stops[i].arrivals = seen.stops[i].samples;
       plan_.stops[i].arrivals_served = seen.stops[i].good;

@@ -15,7 +15,17 @@ namespace {
 constexpr int kChunks = 20;  // Pieces of a stop's samples that are worked on independently.
 
 constexpr double kSureDeviations = 4.5;  // Of the difference of two shares: one right plan in 150,000 stops exceeds it.
-constexpr double kSearchSlack = 0.005;   // What two searches for grasps may differ by.
+constexpr double kSearchSlack = 0.02;    // Of a share: grasps that a search with kArrivalTries does not find.
+constexpr int kTries = 1500;
+constexpr int kArrivalTries = 300;  // Where many arrivals fail, each that does costs all its tries.
+
+/// What base poses are counted for.
+struct Question {
+  const char* stage;
+  double may_lose;  ///< Samples of a stop; more end the count early.
+  int tries;        ///< IK solutions tried before a part counts as lost ...
+  bool thoroughly;  ///< ... and many more, since the verdict hangs on each sample.
+};
 
 /// What some of a stop's samples gave.
 struct Served {
@@ -64,21 +74,22 @@ std::vector<Eigen::Vector3d> arrivals(const Context& context, std::size_t stop) 
 
 /// One piece of a stop. It ends early once it alone has lost more samples than the whole stop may lose.
 Served run_chunk(const Context& context, const std::vector<Eigen::Vector3d>& poses, std::size_t begin, std::size_t end,
-                 double may_lose, const std::vector<int>& wanted, Judge& judge, GraspSearch search) {
+                 const Question& question, const std::vector<int>& wanted, Judge& judge, GraspSearch search) {
   Served result;
   result.lost.assign(wanted.size(), 0);
   std::vector<std::size_t> order(wanted.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   for (std::size_t i = begin; i < end; ++i) {
-    if (result.samples - result.good > may_lose || context.monitor.stopped()) break;
+    if (result.samples - result.good > question.may_lose || context.monitor.stopped()) break;
     judge.set_base(poses[i]);
     ++result.samples;
     if (judge.touch(context.plan.home, 0)) {
       ++result.home_blocked;
       continue;
     }
-    const auto failed =
-        std::find_if(order.begin(), order.end(), [&](std::size_t k) { return !search.find_thoroughly(wanted[k]); });
+    const auto failed = std::find_if(order.begin(), order.end(), [&](std::size_t k) {
+      return !(question.thoroughly ? search.find_thoroughly(wanted[k]) : search.find(wanted[k]));
+    });
     if (failed == order.end()) {
       ++result.good;
     } else {
@@ -91,7 +102,7 @@ Served run_chunk(const Context& context, const std::vector<Eigen::Vector3d>& pos
 
 /// Counts for each stop from how many of its poses the robot can stand at home and grasp what it should there.
 std::vector<Served> count_served(const Context& context, const std::vector<std::vector<Eigen::Vector3d>>& poses,
-                                 double may_lose, const char* stage, std::size_t& configurations) {
+                                 const Question& question, std::size_t& configurations) {
   const std::size_t stops = poses.size();
   std::vector<std::vector<int>> wanted;
   for (const CheckedStop& stop : context.plan.stops) wanted.push_back(wanted_parts(context.plan, stop.trays));
@@ -100,11 +111,11 @@ std::vector<Served> count_served(const Context& context, const std::vector<std::
   std::vector<Served> chunks(stops * kChunks);
   const auto work = [&](std::size_t item, int worker) {
     const std::size_t stop = item / kChunks, chunk = item % kChunks, count = poses[stop].size();
-    GraspSearch search(context, judges[worker], pools, Rng(context.options.seed, stops + item));
-    chunks[item] = run_chunk(context, poses[stop], count * chunk / kChunks, count * (chunk + 1) / kChunks, may_lose,
+    GraspSearch search(context, judges[worker], pools, Rng(context.options.seed, stops + item), question.tries);
+    chunks[item] = run_chunk(context, poses[stop], count * chunk / kChunks, count * (chunk + 1) / kChunks, question,
                              wanted[stop], judges[worker], std::move(search));
   };
-  parallel_for(stops * kChunks, context.options.threads, work, context.monitor, stage);
+  parallel_for(stops * kChunks, context.options.threads, work, context.monitor, question.stage);
   for (const Judge& judge : judges) configurations += judge.queries();
   std::vector<Served> served(stops);
   for (std::size_t item = 0; item < chunks.size(); ++item) {
@@ -143,8 +154,8 @@ void check_robustness(const Context& context, Faults& faults, std::vector<StopRa
                       std::size_t& configurations) {
   std::vector<std::vector<Eigen::Vector3d>> poses;
   for (std::size_t stop = 0; stop < context.plan.stops.size(); ++stop) poses.push_back(in_disc(context, stop));
-  const double may_lose = (1 - context.options.required_rate) * context.options.samples;
-  const std::vector<Served> served = count_served(context, poses, may_lose, "robustness", configurations);
+  const Question question{"robustness", (1 - context.options.required_rate) * context.options.samples, kTries, true};
+  const std::vector<Served> served = count_served(context, poses, question, configurations);
   for (std::size_t stop = 0; stop < served.size(); ++stop)
     rates.push_back(summarize(context, stop, served[stop], faults));
 }
@@ -154,7 +165,8 @@ void check_arrivals(const Context& context, Faults& faults, std::size_t& configu
   if (context.plan.arrival_covariance.isZero(0)) return;
   std::vector<std::vector<Eigen::Vector3d>> poses;
   for (std::size_t stop = 0; stop < stops.size(); ++stop) poses.push_back(arrivals(context, stop));
-  const std::vector<Served> served = count_served(context, poses, context.options.samples, "arrivals", configurations);
+  const Question question{"arrivals", static_cast<double>(context.options.samples), kArrivalTries, false};
+  const std::vector<Served> served = count_served(context, poses, question, configurations);
   for (std::size_t i = 0; i < served.size() && !context.monitor.stopped(); ++i) {
     const double mine = served[i].samples, said = stops[i].arrivals;
     const double both = (served[i].good + stops[i].arrivals_served) / (mine + said);

@@ -15,6 +15,7 @@ import pytest
 import mmgrasp as mg
 from mmgrasp.scenario import load_scenario
 from mmgrasp.viz.report import report_html
+from mmgrasp.viz.topview import arrival_ellipse
 
 Write = Callable[..., Path]
 COVARIANCE = [[0.0036, 0.0009, 0.0], [0.0009, 0.0025, 0.0], [0.0, 0.0, 0.01]]
@@ -84,6 +85,14 @@ def test_it_needs_arrivals_to_draw(unsure: dict[str, Any], write: Write) -> None
     scenario = load_scenario(write(unsure | {"options": {**unsure.get("options", {}), "robustness_samples": 0}}))
     with pytest.raises(mg.InvalidInput, match="robustness_samples"):
         scenario.problem()
+
+
+def test_the_ellipse_holds_95_of_100_arrivals() -> None:
+    along, across, turn = arrival_ellipse(COVARIANCE)
+    drawn = np.random.default_rng(2).multivariate_normal(np.zeros(3), COVARIANCE, 200_000)[:, :2]
+    c, s = math.cos(math.radians(turn)), math.sin(math.radians(turn))
+    inside = np.linalg.norm(drawn @ np.array([[c, -s], [s, c]]) / [along, across], axis=1) <= 1
+    assert abs(float(inside.mean()) - 0.95) < 0.003
 
 
 def test_a_mean_error_is_no_bound() -> None:

@@ -97,6 +97,13 @@ def stop_intersections(plan: dict[str, Any]) -> list[dict[str, Any]]:
     return [item for item in used if len(item["trays"]) > 1]
 
 
+def arrival_ellipse(covariance: list[list[float]]) -> tuple[float, float, float]:
+    """Half axes [m] of the ellipse in which 95 of 100 arrivals come to stand, and how far the first is turned from x [deg]."""
+    variances, axes = np.linalg.eigh(np.array(covariance)[:2, :2])
+    across, along = np.sqrt(CHI_SQUARED_95 * np.maximum(variances, 0))
+    return float(along), float(across), float(np.degrees(np.arctan2(axes[1, 1], axes[0, 1])))
+
+
 def sure(stop: dict[str, Any]) -> str:
     """How likely a stop serves all its parts, as the end of a sentence."""
     seen = stop.get("arrivals")
@@ -225,12 +232,10 @@ class TopView:
         """The ellipse in which 95 of 100 arrivals come to stand."""
         if "arrival_covariance" not in self.scenario:
             return ""
-        variances, axes = np.linalg.eigh(np.array(self.scenario["arrival_covariance"])[:2, :2])
-        across, along = np.sqrt(CHI_SQUARED_95 * np.maximum(variances, 0)) * SCALE
-        turn = -np.degrees(np.arctan2(axes[1, 1], axes[0, 1]))
+        along, across, turn = arrival_ellipse(self.scenario["arrival_covariance"])
         return (
-            f'<ellipse cx="{x:.1f}" cy="{y:.1f}" rx="{along:.1f}" ry="{across:.1f}" '
-            f'transform="rotate({turn:.1f} {x:.1f} {y:.1f})" class="uncertainty"/>'
+            f'<ellipse cx="{x:.1f}" cy="{y:.1f}" rx="{along * SCALE:.1f}" ry="{across * SCALE:.1f}" '
+            f'transform="rotate({-turn:.1f} {x:.1f} {y:.1f})" class="uncertainty"/>'
         )
 
     def _arrow(self, pose: Sequence[float], colour: str, length: float) -> str:

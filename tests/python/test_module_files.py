@@ -96,6 +96,23 @@ def test_links_stay_and_what_they_lead_to_is_replaced(door: str, tmp_path: Path)
     load(str(tmp_path / "link.bt"))
 
 
+@pytest.mark.parametrize("door", READERS)
+def test_paths_that_are_no_utf_8_are_told(door: str, tmp_path: Path) -> None:
+    with pytest.raises(mg.Error, match=r"a\\(xff|udcff)b"):
+        READERS[door](f"{tmp_path}/a\udcffb.bt")
+
+
+def test_a_cache_whose_name_is_no_utf_8(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", f"{tmp_path}/a\udcffb")
+    assert mg.base.cache_folder() == f"{tmp_path}/a\udcffb/mmgrasp"
+    mg.ReachDatabase.load_or_build(ARM, mg.base.cache_folder(), samples=20_000)
+    assert [p.name for p in (Path(mg.base.cache_folder())).iterdir()]
+    monkeypatch.delenv("XDG_CACHE_HOME")
+    monkeypatch.delenv("HOME")
+    monkeypatch.setenv("TMPDIR", "/nonexistent")
+    assert mg.base.cache_folder() == "/tmp/mmgrasp-cache"
+
+
 def test_a_database_does_not_replace_a_folder_with_more_in_it(tmp_path: Path) -> None:
     database = OBJECTS["ReachDatabase"]()
     database.save(tmp_path / "db")

@@ -110,7 +110,7 @@ def test_a_cache_whose_name_is_no_utf_8(tmp_path: Path, monkeypatch: pytest.Monk
     monkeypatch.delenv("XDG_CACHE_HOME")
     monkeypatch.delenv("HOME")
     monkeypatch.setenv("TMPDIR", "/nonexistent")
-    assert mg.base.cache_folder() == "/tmp/mmgrasp-cache"
+    assert mg.base.cache_folder().endswith("/mmgrasp-cache")  # planning goes on without it
 
 
 def test_a_database_does_not_replace_a_folder_with_more_in_it(tmp_path: Path) -> None:

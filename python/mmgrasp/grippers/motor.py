@@ -29,6 +29,7 @@ class Composed:
         return np.cumsum([0.0, *(height for _, height in self.bodies)])
 
     def mesh(self) -> Mesh:
+        """Its surface, closed [m]."""
         profile: list[tuple[Section, float]] = []
         for (section, _), (low, high) in zip(self.bodies, pairwise(self.heights()), strict=True):
             sides = tuple(1e-3 * s for s in section) if isinstance(section, tuple) else 1e-3 * section

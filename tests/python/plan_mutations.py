@@ -66,7 +66,6 @@ def main() -> int:
     scenario = yaml.safe_load((ASSETS / "scenarios" / "storeroom.yaml").read_text())
     scenario["trays"] = [{**scenario["trays"][i], "targets": scenario["trays"][i]["targets"][:1]} for i in (0, 1, 3)]
     scenario["reach"] = {"samples": 500_000}
-    scenario["arrival_covariance"] = [[4e-4, 0.0, 0.0], [0.0, 4e-4, 0.0], [0.0, 0.0, 3e-4]]
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "scenario.yaml"
         path.write_text(yaml.safe_dump(scenario, sort_keys=False))

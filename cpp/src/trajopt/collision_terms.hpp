@@ -77,7 +77,7 @@ class MMGRASP_EXPORT CollisionRows {
   double padding_ = 0;  ///< No pair's is larger [m].
   std::set<Pair> watched_;
   std::set<Pair> corners_;           ///< Pairs whose padding met though they were that far apart.
-  std::map<Pair, double> paddings_;  ///< Of watched pairs, where there is any [m].
+  std::map<Pair, double> paddings_;  ///< Padding of those watched pairs that have any [m].
   std::set<Sample> samples_;         // samples beside the regular ones
   std::vector<Eigen::VectorXd> reference_;
   std::map<Sample, std::map<Pair, std::vector<SeparatingPlane>>> planes_;

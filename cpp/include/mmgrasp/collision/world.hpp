@@ -34,8 +34,8 @@ struct MMGRASP_EXPORT Padding {
   double links = 0;     ///< Links of the robot.
   double attached = 0;  ///< What is attached to them.
   double objects = 0;   ///< Objects of the scene.
-  /// In place of these for single bodies: by a link, an object (attached or not) or an SRDF group, whose links take it
-  /// unless they are named themselves (of several groups the most).
+  /// Padding of single bodies, used in place of these: the key names a link, an object (attached or not) or an SRDF
+  /// group, whose links take it unless they are named themselves (of several groups the most).
   std::map<std::string, double> by_name = {};
   double most() const;  ///< The largest of all.
   void check() const;

@@ -47,7 +47,7 @@ struct MMGRASP_EXPORT BeamFrame {
   static constexpr double kShortest = 1e-6;           ///< [m]
   double length(int member) const;                    ///< Between the member's nodes [m].
   Eigen::Matrix3d R_object_member(int member) const;  ///< Columns: x along the member, y and z of its cross section.
-  double mass() const;                                ///< Of members and loads [kg].
+  double mass() const;                                ///< Mass of members and loads together [kg].
   Eigen::Vector3d centre_of_mass() const;             ///< [m]; throws InvalidInput when nothing has mass.
   /// The same frame with a node more on a member, 0 < distance < length: the member keeps the first part, the second
   /// part comes last. Nothing else changes, nor does how it bends.

@@ -22,7 +22,7 @@ namespace mmgrasp {
 struct MMGRASP_EXPORT ObjectPathProblem {
   JointGroup group;                    ///< Its tip is the tool frame of grasps.
   World world;                         ///< Without the object.
-  std::vector<LinkShape> object;       ///< In the object's frame; never empty.
+  std::vector<LinkShape> object;       ///< The object's shapes, placed in its frame; never empty.
   Poses T_world_object;                ///< Where it lies, then where it goes: at least two.
   std::optional<Hand> gripper;         ///< Opens its fingers as each grasp says; none: they stay as the group has them.
   std::set<std::string> touch_links;   ///< Links that may touch the object; empty: as World::attach says.
@@ -52,8 +52,8 @@ struct MMGRASP_EXPORT ObjectPathOptions {
   bool single_configuration = false;
   bool all_turns = true;      ///< Joints that may turn more than once come in every turn.
   int redundant_values = 0;   ///< Samples of a seventh joint, evenly over its range; 0: 24. >= 0.
-  double base_spacing = 0.2;  ///< Of the places where a moving base may stand, a grid along x and y [m]; > 0.
-  int base_headings = 4;      ///< Of the base at each place, evenly over a turn; > 0.
+  double base_spacing = 0.2;  ///< Distance of the places where a moving base may stand, a grid along x and y [m]; > 0.
+  int base_headings = 4;      ///< Base headings tried at each place, evenly over a turn; > 0.
   double gravity = kGravity;  ///< Along the world's -z [m/s2]; >= 0.
   double max_sag = 0;         ///< At each pose the object may bend by no more than this [m]; 0: as it likes. >= 0.
   void check() const;
@@ -74,7 +74,7 @@ struct MMGRASP_EXPORT ObjectPathResult {
   /// Cost(C) of P2 3.3.1: the sum of `violations` and one for each pose of `overloaded`, or, when all that is zero, the
   /// number of gaps that no allowed motion bridges. Zero if and only if solved.
   int violation = 0;
-  /// Of each pose: 2 when no arm configuration reaches it, 1 when all that do collide, else 0.
+  /// One number for each pose: 2 when no arm configuration reaches it, 1 when all that do collide, else 0.
   std::vector<int> violations;
   Rejections rejections;   ///< Configurations rejected, of those that were checked.
   int refused_edges = 0;   ///< Motions between waypoints that collide or leave the object's path.

@@ -52,7 +52,7 @@ struct MMGRASP_EXPORT GraspOptimum {
   double lower_bound = 0;
   double gap = 1;         ///< How much cheaper another grasp could be at most, as a share of the cost found.
   Grasp grasp;            ///< Only with a path.
-  ObjectPathResult path;  ///< By follow_object_path: checked more finely than the search does.
+  ObjectPathResult path;  ///< The best grasp's path by follow_object_path, checked more finely than the search does.
   /// Every grasp that the search found feasible, the cheapest first: candidates for other planners, which find their
   /// cost in them. The first has passed the finer check, too.
   std::vector<FeasibleGrasp> feasible;
@@ -64,7 +64,8 @@ struct MMGRASP_EXPORT GraspOptimum {
   /// Poses in order, each with how many of the grasps tried could not reach it and at how many all arm configurations
   /// collided.
   std::vector<int> unreachable, colliding;
-  std::vector<int> overloaded;  ///< Of each pose: with how many of them the pipe bends or bears more than it may there.
+  std::vector<int>
+      overloaded;  ///< For each pose: with how many of them the pipe bends or bears more than it may there.
 };
 
 /// The feasible grasps, each with its mean sag after the first pose [m] as its cost: for plan_manipulation with

@@ -28,7 +28,7 @@ inline bool operator==(const PartRef& a, const PartRef& b) {
 inline bool operator!=(const PartRef& a, const PartRef& b) {
   return !(a == b);
 }
-/// By tray, then by part.
+/// Orders parts by tray, then by part.
 inline bool operator<(const PartRef& a, const PartRef& b) {
   return a.tray != b.tray ? a.tray < b.tray : a.part < b.part;
 }

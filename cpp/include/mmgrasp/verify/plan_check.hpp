@@ -85,7 +85,7 @@ struct MMGRASP_EXPORT CheckedGrid {
 /// How base poses for a tray were searched.
 struct MMGRASP_EXPORT CheckedTray {
   std::vector<double> headings;                                   ///< Base headings tried [rad].
-  Eigen::Vector2d middle = Eigen::Vector2d::Zero();               ///< Of the tray, in the world [m].
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();               ///< Middle of the tray, in the world [m].
   double max_distance = std::numeric_limits<double>::infinity();  ///< Base poses farther from it were left out [m].
   bool shares_headings = false;  ///< Tried at other trays' headings, too, where one of these trays can be served.
 };
@@ -149,7 +149,8 @@ struct MMGRASP_EXPORT PlanToCheck {
   /// nothing.
   bool padded = false;
   std::vector<std::string> trays;
-  std::map<std::string, CheckedTray> searched;  ///< By tray; one that is not named may have any region.
+  std::map<std::string, CheckedTray>
+      searched;  ///< What was searched for each tray, by name; one that is not named may have any region.
   CheckedGrid grid;
   std::vector<CheckedRegion> regions;
   std::vector<CheckedStop> stops;

@@ -22,7 +22,7 @@ constexpr std::size_t kMostAsked = 300;
 
 struct Region {
   double area = 0;
-  std::vector<Eigen::Vector3d> middles;  ///< Of some of its faces, spread over its area.
+  std::vector<Eigen::Vector3d> middles;  ///< Middles of some of its faces, spread over its area.
   std::map<int, double> around;          ///< Length of the border with each neighbour [m].
   RegionHull hull;
   bool alive = true;

@@ -155,8 +155,9 @@ void IkEnclosure::spherical(const FormPose& T, std::vector<FormConfiguration>& o
   }
 }
 
-/// Of R = Rz(4) Ry(5) Rz(sign 6), whose columns are given, along z (axis 4), y (axis 5) and x = y x z. The entries tell
-/// each angle without going through the others, so errors do not pile up where the wrist is nearly stretched.
+/// Angles of R = Rz(4) Ry(5) Rz(sign 6), whose columns are given, along z (axis 4), y (axis 5) and x = y x z. The
+/// entries tell each angle without going through the others, so errors do not pile up where the wrist is nearly
+/// stretched.
 void IkEnclosure::euler_wrist(const FormVector& Rx, const FormVector& Ry, const FormVector& Rz,
                               const FormConfiguration& arm, std::vector<FormConfiguration>& out) const {
   const Vector3d z = h_[3], y = h_[4], x = y.cross(z);

@@ -63,7 +63,7 @@ class MMGRASP_EXPORT IkEnclosure {
   std::array<Eigen::Vector3d, 6> h_, p_;  ///< Axes at zero, snapped to the special geometry.
   Eigen::Matrix3d R_tip_;
   Eigen::Vector3d t_tip_;
-  Eigen::Vector3d meeting_;  ///< Of the wrist's axes (4, 5, 6; or 5, 6).
+  Eigen::Vector3d meeting_;  ///< Where the wrist's axes meet (4, 5, 6; or 5, 6).
   bool spherical_ = false;
   int wrist_sign_ = 0;
   double off_rotation_ = 0, off_position_ = 0;  ///< What snapping and polishing leave.

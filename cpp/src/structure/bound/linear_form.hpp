@@ -84,7 +84,7 @@ inline LinearForm sine(const LinearForm& a) {
   return composed(a, std::sin(a.centre), std::cos(a.centre), std::min(1.0, std::abs(std::sin(a.centre)) + r));
 }
 
-/// Of two enclosures of the same the one that leaves less open: a plain range has no slopes, and its width is all
+/// The one of two enclosures of the same value that leaves less open: a plain range has no slopes, and its width is all
 /// error.
 inline LinearForm sharper(const LinearForm& a, const LinearForm& range) {
   return a.error < range.error ? a : range;

@@ -87,7 +87,7 @@ struct ObjectPathEvaluator::Impl {
   const JointGroup* group = nullptr;
   detail::PathConfigurations* solver = nullptr;
   detail::AttachedChecker* checker = nullptr;
-  Poses half_way_poses;         ///< Of the object, after each pose.
+  Poses half_way_poses;         ///< Poses of the object half-way to the next, one after each pose.
   bool stress_limited = false;  ///< Some member's material has a limit.
 
   Impl(const ObjectPathProblem& given, const ObjectPathOptions& with) : problem(given), options(with) {}
@@ -162,7 +162,7 @@ ConfigurationGraph ObjectPathEvaluator::Impl::graph(const Configurations& found)
   const auto& wraps = group->wraps();
   std::vector<int> order;
   for (std::size_t layer = 0; layer + 1 < sizes.size(); ++layer) {
-    // Of many configurations only those are tried that are near in the value that spreads most.
+    // When there are many configurations only those are tried that are near in the value that spreads most.
     const MatrixXd& q = found.q[layer];
     Eigen::Index value = -1;
     double widest = 0;

@@ -24,7 +24,7 @@ class PathConfigurations {
   struct Layer {
     Eigen::MatrixXd q;               ///< A column each.
     Eigen::VectorXd manipulability;  ///< Along the motion (P2 3.2.3.3.3); 0 without one.
-    Rejections rejections;           ///< Of what does not reach the pose.
+    Rejections rejections;           ///< Causes for which configurations do not reach the pose.
   };
   /// `motion`: of the tool, a twist; zero for none.
   Layer at(const Pose& T_world_hand, const Vector6d& motion);
@@ -48,7 +48,7 @@ class PathConfigurations {
   std::optional<WholeTurns> turns_;
   Eigen::VectorXd middle_;
   std::vector<Eigen::Vector3d> bases_;
-  // Of the pose at hand:
+  // These belong to the pose at hand.
   Vector6d motion_;
   Eigen::VectorXd q_;
   Matrix6Xd J_;

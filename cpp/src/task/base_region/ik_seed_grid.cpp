@@ -12,7 +12,7 @@ namespace {
 constexpr int kFruitless = 2;    // Seeds without a solution after which a node counts as out of reach.
 constexpr int kIterations = 20;  // Most of one IK search: from a stored configuration near by a success takes 4 to 10.
 constexpr double kFar =
-    1.2;  // In cells of the database: a node without a stored configuration so near is out of reach.
+    1.2;  // Distance in cells of the database: a node without a stored configuration so near is out of reach.
 constexpr double kSame = 1e-3;  // Configurations nearer than this are one [rad or m].
 constexpr double kPerUnit =
     8;  // Cells per unit of a rotation matrix's entries, centred on 0 and 1, so that upright tools are.
@@ -116,7 +116,7 @@ double IkSeedGrid::Slice::squared_distance(int ix, int iy, double x, double y) c
 
 const double* IkSeedGrid::Node::solution(int k, const IkSeedGrid& grid, const Pose& T_base_node) {
   if (k >= found_.load(std::memory_order_acquire)) {
-    // In this order: the last one may have been found in between.
+    // The order matters: the last one may have been found in between.
     if (exhausted_.load(std::memory_order_acquire) && k >= found_.load(std::memory_order_acquire)) return nullptr;
     const std::lock_guard<std::mutex> lock(mutex_);
     while (k >= found_.load(std::memory_order_relaxed)) {

@@ -97,7 +97,7 @@ class DriveByCheck {
     return false;
   }
 
-  /// Of the fingers at a time.
+  /// Opening of the fingers at a time.
   double opening(double t) const {
     const double share = (t - drive_by_.close_at) / (drive_by_.closed_at - drive_by_.close_at);
     return motion_.opening + std::clamp(share, 0.0, 1.0) * (width_ - motion_.opening);

@@ -37,7 +37,8 @@ std::vector<TurnPair> needed_pairs(const std::vector<double>& starts, const std:
   for (const double a : starts)
     for (const double b : goals)
       all.push_back({a, b, static_cast<int>(std::lround((b - a - (goals.front() - starts.front())) / kTwoPi))});
-  // Of a difference, the start's own turn first, so that most pairs share it; then the pair with most room.
+  // Among equal differences the start's own turn comes first, so that most pairs share it; then the pair with most
+  // room.
   std::sort(all.begin(), all.end(), [&](const TurnPair& a, const TurnPair& b) {
     const double a_off = std::abs(a.start - own_start), b_off = std::abs(b.start - own_start);
     if (a.turns != b.turns) return a.turns < b.turns;

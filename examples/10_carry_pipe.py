@@ -15,6 +15,6 @@ print(found)
 if found.path is not None:
     grasp = grasps[found.grasp_index]
     print(
-        f"taken: {grasp}; {found.stats['graph_searches']} searches of the roadmap in {found.stats['search_seconds']:.2f} s"
+        f"taken: {grasp}; {found.stats.graph_searches} searches of the roadmap in {found.stats.search_seconds:.2f} s"
     )
     print("picture:", write_transfer(cell, grasp, found.path, "carry_pipe.png"))

@@ -172,7 +172,7 @@ void bind_picks(py::module_& m) {
           "kind", [](const PickMotion& p) { return to_string(p.kind); },
           "transit, approach, lift, transfer or retreat.")
       .def_readonly("opening", &PickMotion::opening, "Opening of the fingers during the motion [m].")
-      .def_readonly("holding", &PickMotion::holding, "The part is attached during the motion.")
+      .def_readonly("attached", &PickMotion::attached, "The part is attached during the motion.")
       .def_readonly("trajectory", &PickMotion::trajectory, "The arm on its clock, from 0.")
       .def("__repr__", [](const PickMotion& p) {
         return std::string("PickMotion(") + to_string(p.kind) + ", " +
@@ -331,7 +331,7 @@ void bind_plan_result(py::module_& m) {
             const ListedRegions listed(p);
             Intersections found = p.intersections;
             found.robust = listed.counted(std::move(found.robust));
-            found.lost = listed.counted(std::move(found.lost));
+            found.too_small = listed.counted(std::move(found.too_small));
             return found;
           },
           "What the stops were chosen from.")

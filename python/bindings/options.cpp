@@ -14,9 +14,11 @@ const std::map<std::string, std::string> kRenamed = {{"attempt_time_limit", "sol
                                                      {"attempts", "seeds"},
                                                      {"choices", "grasp_assignments"},
                                                      {"edge_step", "joint_step"},
+                                                     {"free", "free_axes"},
                                                      {"gap", "clearance"},
                                                      {"held_only", "attached_only"},
                                                      {"improved", "on_solution"},
+                                                     {"look_out", "constraint_distance"},
                                                      {"max_joint_step", "jump_threshold"},
                                                      {"max_samples", "max_iterations"},
                                                      {"stands", "goal_configurations"},
@@ -35,6 +37,13 @@ std::string nearest_name(const std::string& wrong, const std::vector<std::string
   std::string all = "; known are ";
   for (std::size_t i = 0; i < known.size(); ++i) all += (i ? ", " : "") + known[i];
   return all;
+}
+
+void refuse_unknown(const char* function, const py::kwargs& unknown, const std::vector<std::string>& known) {
+  for (const auto& [key, value] : unknown) {
+    const std::string name = py::cast<std::string>(key);
+    throw InvalidInput(std::string(function) + "(" + name + "=...): unknown keyword" + nearest_name(name, known));
+  }
 }
 
 void refuse_value(const std::string& name, const py::handle& value, const char* rule) {

@@ -190,7 +190,9 @@ def test_bad_input(robot: mg.Robot, group: mg.robot.JointGroup, change: dict[str
 
 def test_bad_tasks() -> None:
     with pytest.raises(mg.InvalidInput, match="roll"):
-        mg.DriveByTask(TASK, free=["rol"])
+        mg.DriveByTask(TASK, free_axes=["rol"])
+    with pytest.raises(mg.InvalidInput, match="free_axes now"):
+        mg.DriveByTask(TASK, free=["roll"])  # type: ignore[call-arg]
     with pytest.raises(mg.InvalidInput, match="max_tool_speed"):
         mg.DriveByTask(TASK, max_tool_speed=0)
     with pytest.raises(mg.InvalidInput, match="dwell"):

@@ -129,7 +129,7 @@ def test_the_whole_round_is_one_motion(passing: mg.part_supply.DriveByPlan) -> N
     closing = next(e for e in motion.gripper if e["command"] == "close")
     assert closing["object"] == done.part
     assert closing["time"] == pytest.approx(done.close_at)
-    opened = next(m.opening for m in passing.plan.picks[done.pick].motions if m.holding)
+    opened = next(m.opening for m in passing.plan.picks[done.pick].motions if m.attached)
     assert closing["opening"] == opened
     at = int(np.searchsorted(motion.times, closing["time"]))
     assert np.linalg.norm(motion.base_twists[at, :2]) > 0.02

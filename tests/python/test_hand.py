@@ -113,7 +113,7 @@ def test_quality_is_the_product_of_its_parts() -> None:
     given = mg.Grasp(np.eye(4), 0.03, cost=1.5, quality=0.25)
     assert given.provenance is None
     assert given.to_dict() == {
-        "T_object_hand": np.eye(4).tolist(), "opening": 0.03, "cost": 1.5, "quality": 0.25, "parts": {}, "posture": [],
+        "T_object_hand": np.eye(4).tolist(), "opening": 0.03, "cost": 1.5, "quality": 0.25, "quality_factors": {}, "posture": [],
         "provenance": None,
     }  # fmt: skip
 

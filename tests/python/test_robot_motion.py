@@ -10,7 +10,7 @@ import pytest
 
 import mmgrasp as mg
 from conftest import ASSETS
-from mmgrasp._records import MotionMessage
+from mmgrasp.records import MotionMessage
 from mmgrasp.planning import RobotMotion
 from mmgrasp.reproduce.drive_by import GOAL, START, whole_body
 

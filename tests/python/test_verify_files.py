@@ -23,7 +23,7 @@ import mmgrasp as mg
         ('{"format": "mmgrasp-plan", "version": NaN}', "no number in JSON"),
         ('{"format": ' + "[" * 900 + "]" * 900 + "}", "nested"),
         ("[" * 100000, "nested"),
-        ('{"format": "mmgrasp-plan", "version": 3', "is no valid JSON"),
+        ('{"format": "mmgrasp-plan", "version": 4', "is no valid JSON"),
         ("[]", "is no plan"),
         ('"\\ud800"', "is no plan"),
     ],
@@ -47,7 +47,7 @@ def test_texts_that_are_no_plan(tmp_path: Path, text: str, piece: str) -> None:
         ("timings", 3),
         ("stops.0.intersection", 1.5),
         ("robustness_rate", 1e400),
-        ("lost_intersections", {}),
+        ("too_small_intersections", {}),
     ],
 )
 def test_values_of_another_form_are_named(small_plan_dict: dict[str, Any], path: str, value: Any) -> None:

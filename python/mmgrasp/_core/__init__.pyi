@@ -4,7 +4,7 @@ The C++ library behind mmgrasp. Import names from mmgrasp itself.
 from __future__ import annotations
 import collections.abc
 import enum
-import mmgrasp._records
+import mmgrasp.records
 import numpy
 import numpy.typing
 import os
@@ -108,7 +108,7 @@ class Robot:
         Link pairs that need no collision check: (a, b, reason).
         """
     @property
-    def end_effectors(self) -> list[mmgrasp._records.EndEffectorRow]:
+    def end_effectors(self) -> list[mmgrasp.records.EndEffectorRow]:
         """
         SRDF end effectors: name, group and parent_link.
         """
@@ -123,7 +123,7 @@ class Robot:
         SRDF states: group, state, joint to value. Joints with several values appear as joint/x, joint/y, ...
         """
     @property
-    def groups(self) -> dict[str, mmgrasp._records.GroupRow]:
+    def groups(self) -> dict[str, mmgrasp.records.GroupRow]:
         """
         SRDF groups: name to joints, base_link, tip_link.
         """
@@ -138,7 +138,7 @@ class Robot:
         Content hash: kinematics, shapes, limits, disabled pairs.
         """
     @property
-    def joint_table(self) -> list[mmgrasp._records.JointRow]:
+    def joint_table(self) -> list[mmgrasp.records.JointRow]:
         """
         Every joint as a dict.
         """
@@ -163,7 +163,7 @@ class Robot:
         Joints that nothing drives (SRDF passive_joint): in no group.
         """
     @property
-    def report(self) -> mmgrasp._records.RobotReport:
+    def report(self) -> mmgrasp.records.RobotReport:
         """
         What loading found.
         """
@@ -508,14 +508,14 @@ class World:
         Names of the scene's objects.
         """
     @property
-    def padding(self) -> mmgrasp._records.WorldPadding:
+    def padding(self) -> mmgrasp.records.WorldPadding:
         """
         How far bodies are grown where the robot (with what it holds) meets the scene [m]; never within the robot. A
         number is for all links; a dict has the keys `links`, `attached`, `objects` and `by_name` (link, object or
         SRDF group to its own padding, in place of the others).
         """
     @padding.setter
-    def padding(self, arg1: float | mmgrasp._records.WorldPadding | collections.abc.Mapping[str, float | collections.abc.Mapping[str, float]]) -> None:
+    def padding(self, arg1: float | mmgrasp.records.WorldPadding | collections.abc.Mapping[str, float | collections.abc.Mapping[str, float]]) -> None:
         ...
 class Outcome(enum.Enum):
     """
@@ -1035,12 +1035,12 @@ class RobotSource:
         robot's root). `mesh_files` maps the URDF's mesh filenames to files; an empty one leaves the mesh out.
         """
     @property
-    def added_links(self) -> list[mmgrasp._records.AddedLinkRow]:
+    def added_links(self) -> list[mmgrasp.records.AddedLinkRow]:
         """
         As dicts with the arguments of add_link.
         """
     @property
-    def urdfs(self) -> list[mmgrasp._records.UrdfRow]:
+    def urdfs(self) -> list[mmgrasp.records.UrdfRow]:
         """
         As dicts with the arguments of add_urdf.
         """
@@ -1151,7 +1151,7 @@ class JointTrajectory:
         """
         As a dict of plain numbers, strings and lists, e.g. for JSON.
         """
-    def to_joint_trajectory(self, base_pose: numpy.typing.ArrayLike | None = None) -> mmgrasp._records.MotionMessage:
+    def to_joint_trajectory(self, base_pose: numpy.typing.ArrayLike | None = None) -> mmgrasp.records.MotionMessage:
         """
         RobotMotion's message: columns x, y, theta in front are the base's; without them it stands at base_pose.
         """
@@ -2303,7 +2303,7 @@ class Roadmap:
         Pairs of vertices (m, 2), the smaller number first.
         """
     @property
-    def statistics(self) -> mmgrasp._records.RoadmapStatistics:
+    def statistics(self) -> mmgrasp.records.RoadmapStatistics:
         """
         Mean degree, connected parts, the largest one's vertices, nearest ones joined, connection radius, the volume of the joint limits, and the gamma that PRM* asks for.
         """
@@ -2528,7 +2528,7 @@ class ManipulationResult:
         Sum over all grasps and both ends.
         """
     @property
-    def stats(self) -> mmgrasp._records.ManipulationStats:
+    def stats(self) -> mmgrasp.records.ManipulationStats:
         """
         What the search took: seconds, searches, edges checked; what each stage found and when.
         """
@@ -3688,7 +3688,7 @@ class DriveByResult:
         [s]
         """
     @property
-    def events(self) -> list[mmgrasp._records.DriveByEventRow]:
+    def events(self) -> list[mmgrasp.records.DriveByEventRow]:
         """
         One dict per task: waypoint, time and close_time [s], object (what is held then), attach_time [s] and T_tip_object, candidate, base_speed and
         tool_speed [m/s].
@@ -3729,7 +3729,7 @@ class DriveByResult:
         The answer or, when not solved, the best iterate; None when there was not even a guess.
         """
     @property
-    def violations(self) -> dict[str, mmgrasp._records.ViolationRow]:
+    def violations(self) -> dict[str, mmgrasp.records.ViolationRow]:
         """
         By kind of constraint: value (0 when kept), tolerance, unit, time [s], waypoint, what, kept; measured on a roll-out ten times
         finer than the waypoints.
@@ -3774,7 +3774,7 @@ class RobotMotion:
         Header time, base.x, base.y, base.theta, base.v, base.vy, base.omega, joints, name.velocity, name.acceleration, and
         gripper, where it does anything (what it begins to do up to the row's time).
         """
-    def to_joint_trajectory(self) -> mmgrasp._records.MotionMessage:
+    def to_joint_trajectory(self) -> mmgrasp.records.MotionMessage:
         """
         A dict shaped like a ROS trajectory_msgs/JointTrajectory, with base_pose and base_twist at every point, and `gripper`
         on the same clock.
@@ -3804,7 +3804,7 @@ class RobotMotion:
         [s]
         """
     @property
-    def gripper(self) -> list[mmgrasp._records.GripperEventRow]:
+    def gripper(self) -> list[mmgrasp.records.GripperEventRow]:
         """
         What the gripper does, in order: time and duration [s], command (open or close), opening [m] or None, object.
         """
@@ -3903,12 +3903,12 @@ class PlatformLocations:
         How it ended; `solved` alone comes with an answer.
         """
     @property
-    def pick(self) -> mmgrasp._records.SearchCounts:
+    def pick(self) -> mmgrasp.records.SearchCounts:
         """
         Draws, what they fell at, and iterations of the first pose.
         """
     @property
-    def place(self) -> mmgrasp._records.SearchCounts:
+    def place(self) -> mmgrasp.records.SearchCounts:
         """
         The same of the second pose.
         """
@@ -4737,7 +4737,7 @@ class Graspability:
     def __repr__(self) -> str:
         ...
     @property
-    def counts(self) -> mmgrasp._records.GraspabilityCounts:
+    def counts(self) -> mmgrasp.records.GraspabilityCounts:
         """
         Places checked (tried) and rejected: too_wide, poor, collision, near_better.
         """
@@ -4991,7 +4991,7 @@ class GraspSynthesis:
         Why the arm did not reach grasps.
         """
     @property
-    def counts(self) -> mmgrasp._records.SynthesisCounts:
+    def counts(self) -> mmgrasp.records.SynthesisCounts:
         """
         Surface points drawn and grasps evaluated, by what became of them.
         """
@@ -6448,7 +6448,7 @@ def plan_drive_by(robot: Robot, group: JointGroup, world: World, *, start: numpy
         look_out: float = 0.15  # pairs of bodies nearer than this are constrained [m]
         refinements: int = 6  # times that collision constraints may be added
     """
-def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None = None, padding: float | mmgrasp._records.WorldPadding | collections.abc.Mapping[str, float | collections.abc.Mapping[str, float]] | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, on_solution: collections.abc.Callable[[Improvement], typing.Any] | None = None, planner: str = 'prm_star_mg', ik_solutions: int = 8, first_grasps: int = 4, straight: bool = True, ik_restarts: int = 30, joint_step: float = 0.02, workspace_step: float = 0.005, max_length: float = 0.0, time_limit: float = 15.0, seed: int = 1, threads: int = 0, batch: int = 0, lazy_grasps: bool = True, max_vertices: int = 0, shorten: bool = True, refinements: int = 4, vertices: int = 5000, gamma: float = 0.0, neighbours: int = 0, roadmap_seed: int = 1, max_iterations: int = 1000, range: float = 1.5, rrt_gamma: float = 0.0, exploration: float = 0.5, bidirectional: bool = True, informed: bool = True, goal_cost: float = 0.0, keep_trees: bool = False) -> ManipulationResult:
+def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None = None, padding: float | mmgrasp.records.WorldPadding | collections.abc.Mapping[str, float | collections.abc.Mapping[str, float]] | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, on_solution: collections.abc.Callable[[Improvement], typing.Any] | None = None, planner: str = 'prm_star_mg', ik_solutions: int = 8, first_grasps: int = 4, straight: bool = True, ik_restarts: int = 30, joint_step: float = 0.02, workspace_step: float = 0.005, max_length: float = 0.0, time_limit: float = 15.0, seed: int = 1, threads: int = 0, batch: int = 0, lazy_grasps: bool = True, max_vertices: int = 0, shorten: bool = True, refinements: int = 4, vertices: int = 5000, gamma: float = 0.0, neighbours: int = 0, roadmap_seed: int = 1, max_iterations: int = 1000, range: float = 1.5, rrt_gamma: float = 0.0, exploration: float = 0.5, bidirectional: bool = True, informed: bool = True, goal_cost: float = 0.0, keep_trees: bool = False) -> ManipulationResult:
     """
     Collision-free path of the group that carries the object from start to goal with the best of the grasps (P2 chapters 4 and 5). Every grasp is checked. `padding`: in place of that of the problem's world, see World.padding. `on_solution` is called with every better solution (an Improvement); what it raises ends the call.
     
@@ -6482,7 +6482,7 @@ def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None =
         goal_cost: float = 0.0  # rrt_star_mg: ends with the first path that costs no more; inf: the first at all
         keep_trees: bool = False  # rrt_star_mg: hand over the trees with the result
     """
-def plan_motion(robot: Robot | CollisionChecker, group: JointGroup | None = None, world: World | None = None, *, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike | None = None, tool_poses: numpy.typing.ArrayLike | None = None, regions: collections.abc.Sequence[ToolRegion] = [], via: numpy.typing.ArrayLike | None = None, orientation_constraint: OrientationConstraint | None = None, padding: float | mmgrasp._records.WorldPadding | collections.abc.Mapping[str, float | collections.abc.Mapping[str, float]] | None = None, on_solution: collections.abc.Callable[[Improvement], typing.Any] | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, planner: str = 'rrt_connect', time_limit: float = 5.0, max_iterations: int = 20000, range: float = 0.0, near_end_probability: float = 0.2, base_margin: float = 2.0, joint_step: float = 0.02, workspace_step: float = ..., shorten: bool = True, shorten_iterations: int = 200, ik_solutions: int = 8, region_samples: int = 16, seed: int = 1) -> MotionResult:
+def plan_motion(robot: Robot | CollisionChecker, group: JointGroup | None = None, world: World | None = None, *, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike | None = None, tool_poses: numpy.typing.ArrayLike | None = None, regions: collections.abc.Sequence[ToolRegion] = [], via: numpy.typing.ArrayLike | None = None, orientation_constraint: OrientationConstraint | None = None, padding: float | mmgrasp.records.WorldPadding | collections.abc.Mapping[str, float | collections.abc.Mapping[str, float]] | None = None, on_solution: collections.abc.Callable[[Improvement], typing.Any] | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, planner: str = 'rrt_connect', time_limit: float = 5.0, max_iterations: int = 20000, range: float = 0.0, near_end_probability: float = 0.2, base_margin: float = 2.0, joint_step: float = 0.02, workspace_step: float = ..., shorten: bool = True, shorten_iterations: int = 200, ik_solutions: int = 8, region_samples: int = 16, seed: int = 1) -> MotionResult:
     """
     A collision-free path of the group from `start` (n,) to any of its goals: `goal` (n,) or several as (m, n),
     `tool_poses` of the tip, (4, 4) or (m, 4, 4), and `regions` of them, reached by inverse kinematics; by way of the
@@ -6804,7 +6804,7 @@ def shortest_visiting_tour(lengths: numpy.typing.ArrayLike) -> TourResult:
     """
     Shortest way from start over all n stops to goal. `lengths` is (n + 2, n + 2): stops, start, goal; infinite: no way.
     """
-def simplify_mesh(mesh: Mesh, tolerance: float = 0.0) -> mmgrasp._records.MeshStandIn:
+def simplify_mesh(mesh: Mesh, tolerance: float = 0.0) -> mmgrasp.records.MeshStandIn:
     """
     The simplest solid that contains a mesh and has no point farther than `tolerance` [m] from it, as a dict:
     `shape` (a LinkShape in the mesh's frame), `chosen` (mesh, hull, box, sphere or cylinder), `triangles_saved` and

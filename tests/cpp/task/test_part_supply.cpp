@@ -63,7 +63,7 @@ verify::PlanToCheck to_check(const PartSupplyProblem& problem, const PartSupplyP
     const Tray& tray = problem.trays[pick.part.tray];
     verify::CheckedPick checked{pick.stop, tray.name, tray.parts[pick.part.part].name, pick.grasp, {}};
     for (const PickMotion& motion : pick.motions) {
-      checked.motions.push_back({to_string(motion.kind), motion.opening, motion.holding, motion.trajectory.times,
+      checked.motions.push_back({to_string(motion.kind), motion.opening, motion.attached, motion.trajectory.times,
                                  motion.trajectory.positions, motion.trajectory.velocities});
     }
     check.picks.push_back(checked);

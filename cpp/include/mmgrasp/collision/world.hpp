@@ -51,7 +51,8 @@ struct MMGRASP_EXPORT Padding {
 ///
 /// - A World is plain values: a copy is a snapshot, and checkers keep the copy that they were made with.
 /// - Names are unique over objects, attached objects and fields.
-/// - A distance field is an obstacle of its own kind (add_field): maps of cameras, for example.
+/// - A distance field is an obstacle of its own kind (add_field): a mesh's or a grid's. Maps of cameras are added as
+///   solid cells instead (ProbabilisticSdf::obstacle_cells), since their error is not bounded everywhere.
 /// - Padding grows bodies where the robot meets the scene, never the robot against itself.
 class MMGRASP_EXPORT World {
  public:

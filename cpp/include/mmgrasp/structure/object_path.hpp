@@ -71,8 +71,9 @@ struct MMGRASP_EXPORT ObjectPathResult {
   /// Poses at which the object bends by more than `max_sag`, or bears more stress than its material's limit where one
   /// is given.
   std::vector<int> overloaded;
-  /// Cost(C) of P2 3.3.1: the sum of `violations` and one for each pose of `overloaded`, or, when all that is zero, the
-  /// number of gaps that no allowed motion bridges. Zero if and only if solved.
+  /// Cost(C) of P2 3.3.1, zero if and only if solved: the sum of `violations` plus one for each pose in `overloaded`.
+  /// When that sum is zero and there is still no path, the number of pairs of neighbouring poses between which no motion
+  /// is allowed.
   int violation = 0;
   /// One number for each pose: 2 when no arm configuration reaches it, 1 when all that do collide, else 0.
   std::vector<int> violations;
@@ -81,10 +82,11 @@ struct MMGRASP_EXPORT ObjectPathResult {
   int configurations = 0;  ///< Arm configurations found over all poses.
 };
 
-/// Costs grasps along one path: prepared once, asked thousands of times. Over all arm configurations at all poses the
-/// least cost is found by dynamic programming, from all first configurations at once. Collisions are checked only along
-/// the best sequence so far; what collides leaves and the next best is found, so the answer is that of checking
-/// everything. Not thread-safe; clones share nothing.
+/// Evaluates what one grasp after another costs along the same path; what does not depend on the grasp is prepared once.
+/// For each grasp the cheapest sequence of arm configurations, one at each pose, is found by dynamic programming. Only
+/// the cheapest sequence is checked for collisions; configurations and motions that collide are removed and the next
+/// cheapest is found, until one is free: the same answer as checking every configuration. Not thread-safe; clones share
+/// nothing.
 ///
 ///     ObjectPathEvaluator evaluator(problem);
 ///     for (const Grasp& grasp : grasps) keep_best(grasp, evaluator.evaluate(grasp));

@@ -22,7 +22,7 @@ MMGRASP_EXPORT const char* to_string(MotionKind kind);
 struct MMGRASP_EXPORT PickMotion {
   MotionKind kind = MotionKind::transit;
   double opening = 0;    ///< Opening of the fingers during the motion [m].
-  bool holding = false;  ///< The object is attached during the motion.
+  bool attached = false;  ///< The object is attached during the motion.
   JointTrajectory trajectory;
 };
 

@@ -42,7 +42,7 @@ struct MMGRASP_EXPORT CheckedFinger {
 struct MMGRASP_EXPORT CheckedMotion {
   std::string kind;  ///< transit, approach, lift, transfer, retreat
   double opening = 0;
-  bool holding = false;
+  bool attached = false;
   std::vector<double> times;
   std::vector<Eigen::VectorXd> positions, velocities;
   std::vector<Eigen::VectorXd> accelerations = {};  ///< Empty: not given.
@@ -91,7 +91,7 @@ struct MMGRASP_EXPORT CheckedTray {
 };
 
 /// What a plan says about a leg of its route.
-struct MMGRASP_EXPORT CheckedLegFigures {
+struct MMGRASP_EXPORT CheckedLegValues {
   double length = 0, turning = 0, duration = 0;
 };
 
@@ -159,7 +159,7 @@ struct MMGRASP_EXPORT PlanToCheck {
   std::vector<CheckedDriveBy> drive_by;  ///< What of route and picks is done in passing.
   double closing_speed = 0.1;            ///< How fast the gripper's opening shrinks [m/s], for drive_by.
   int lower_bound = 0;
-  std::vector<CheckedLegFigures> route_figures;  ///< One a leg; empty: not given.
+  std::vector<CheckedLegValues> leg_values;  ///< One a leg; empty: not given.
   std::vector<CheckedIntersection> intersections;
   double robustness_rate = std::numeric_limits<double>::quiet_NaN();  ///< NaN: not given.
 };
@@ -191,7 +191,7 @@ struct MMGRASP_EXPORT PlanCheckOptions {
 /// - which part is picked: `part-unknown`, `part-forgotten`, `part-repeated`, `part-not-target`, `wrong-tray`,
 ///   `wrong-stop`, `stop-order`, `grasp-invalid` (no such index), `tray-unknown`, `tray-forgotten`, `tray-repeated`;
 /// - one arm motion: `motion-order`, `motion-shape` (lengths, NaN), `times`, `too-long`, `position-limit`,
-///   `velocity-limit`, `acceleration-limit`, `discontinuous`, `not-at-rest`, `opening`, `holding`, `self-collision`,
+///   `velocity-limit`, `acceleration-limit`, `discontinuous`, `not-at-rest`, `opening`, `attachment`, `self-collision`,
 ///   `scene-collision`, `attached-collision`;
 /// - what it is for: `not-straight` (approach, lift), `short-approach`, `grasp-missed`, `grasp-empty` (fewer than two
 ///   fingers close on it, or a listed grasp has nothing between the pads), `grasp-opening` (pads at this width would
@@ -205,8 +205,8 @@ struct MMGRASP_EXPORT PlanCheckOptions {
 ///   `stop-outside-region`, `not-minimal`, `lower-bound`, `not-robust`, `region-inflated` (base poses in it that serve
 ///   nothing), `region-incomplete` (cells left out that serve everything: the least number of stops is then not
 ///   proven);
-/// - what only describes: `route-figures` (length, turning, duration), `acceleration` (stored ones above the limits or
-///   not those of the velocities), `bad-figures` (robustness rate below what is required or above 1, intersections that
+/// - what only describes: `route-values` (length, turning, duration), `acceleration` (stored ones above the limits or
+///   not those of the velocities), `wrong-values` (robustness rate below what is required or above 1, intersections that
 ///   lie elsewhere).
 struct MMGRASP_EXPORT Fault {
   std::string code;
@@ -233,9 +233,9 @@ struct MMGRASP_EXPORT PlanCheckResult {
 };
 
 /// Checks a finished plan against its scenario: the robot read again by urdfdom and assimp, kinematics by KDL,
-/// collisions by FCL, the cover solved again by CBC on discs found by searching the floor. Shares no code with the
-/// planners. A broken plan gives
-/// faults, never an exception; only unusable options throw (InvalidInput). Same answer at any thread count.
+/// collisions by FCL, the cover solved again by CBC on discs found by searching the floor. No planner, robot model,
+/// kinematics or collision code of mmgrasp takes part; docs/methods/verify.md lists the little that is shared (poses,
+/// random numbers, threads, closing of meshes). A broken plan gives faults, never an exception; only unusable options throw (InvalidInput). Same answer at any thread count.
 ///
 /// Between samples a motion is the cubic through positions and velocities. Limits on positions hold on all of it (slack
 /// 1e-6), on velocities at the samples (1 %) and between them (5 %), and some motion within 1 % of the acceleration

@@ -8,7 +8,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr int kInside = 3;  // places inside each other member
+constexpr int kPlacesPerMember = 3;  // places between the ends of each member that is not clamped
 
 struct Place {
   int member;
@@ -25,7 +25,7 @@ std::vector<Place> places_of(const BeamFrame& frame, int clamped) {
       if (known[frame.members[m].nodes[end]]++) continue;
       places.push_back({m, end ? length : 0});
     }
-    for (int k = 1; m != clamped && k <= kInside; ++k) places.push_back({m, length * k / (kInside + 1)});
+    for (int k = 1; m != clamped && k <= kPlacesPerMember; ++k) places.push_back({m, length * k / (kPlacesPerMember + 1)});
   }
   return places;
 }

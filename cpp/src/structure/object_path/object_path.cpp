@@ -330,7 +330,7 @@ ObjectPathResult ObjectPathEvaluator::evaluate(const Grasp& grasp) {
       if (!checked[i].emplace(ends, true).second) continue;
       const VectorXd from = found.q[i].col(ends.first), to = found.q[i + 1].col(ends.second);
       if ((sampled || stays_near(i, ends.first, ends.second)) &&
-          (!own.options.check_edges || own.checker->way_is_free(from, from + own.step(from, to), own.edge)))
+          (!own.options.check_edges || own.checker->edge_stays_free(from, from + own.step(from, to), own.edge)))
         continue;
       graph.remove_edge(i, ends.first, ends.second);
       ++result.refused_edges;

@@ -17,7 +17,7 @@
 namespace mmgrasp::detail {
 namespace {
 
-constexpr double kSame = 1e-2;           // Configurations nearer than this are one [rad or m].
+constexpr double kSameConfiguration = 1e-2;           // Configurations nearer than this are one [rad or m].
 constexpr int kConfigurations = 6;       // Tried for one grasp.
 constexpr int kMotionTries = 12;         // Grasp configurations that may reach the costly stage.
 constexpr std::size_t kReleases = 6;     // Goals of a transfer.
@@ -84,7 +84,7 @@ class PickPlanner {
     const auto judge = [&](Eigen::VectorXd q) {
       turn_towards(checker.group(), problem_.home, q);
       for (const Eigen::VectorXd& other : found) {
-        if ((q - other).cwiseAbs().maxCoeff() < kSame) return;
+        if ((q - other).cwiseAbs().maxCoeff() < kSameConfiguration) return;
       }
       const Rejection cause = checker.rejection(q);
       pick_.rejections.add(cause);

@@ -66,7 +66,7 @@ class DriveByCheck {
     const std::size_t stop = pick.stop;
     const auto stands = [this](const VectorXd& q, const Vector3d& wanted, const char* verb) {
       const bool there =
-          (base(q) - wanted).head<2>().norm() <= kJoin && std::abs(wrap_angle(q[2] - wanted.z())) <= kJoin;
+          (base(q) - wanted).head<2>().norm() <= kMaxStep && std::abs(wrap_angle(q[2] - wanted.z())) <= kMaxStep;
       if (!there) fault("route-ends", std::string(verb) + " at " + text(base(q)) + ", must be " + text(wanted));
     };
     stands(first, stop == 0 ? plan_.start : plan_.stops[stop - 1].pose, "starts");

@@ -116,8 +116,8 @@ void bind_record(py::module_& m) {
             py::dict factors;
             for (const QualityFactor& one : g.quality_factors) factors[py::str(one.name)] = one.value;
             return py::dict("T_object_hand"_a = to_array(g.T_object_hand).attr("tolist")(), "opening"_a = g.opening,
-                            "cost"_a = g.cost, "quality"_a = g.quality, "quality_factors"_a = factors, "posture"_a = g.posture,
-                            "provenance"_a = provenance_dict(g.provenance));
+                            "cost"_a = g.cost, "quality"_a = g.quality, "quality_factors"_a = factors,
+                            "posture"_a = g.posture, "provenance"_a = provenance_dict(g.provenance));
           },
           "All of it as numbers, strings, lists and dicts; factors of the quality by their values.")
       .def("__repr__", [](const Grasp& g) {

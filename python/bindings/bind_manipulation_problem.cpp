@@ -71,8 +71,9 @@ void bind_manipulation_problem(py::module_& m) {
                        const ArrayLike& T_world_start, const ArrayLike& T_world_goal, const GraspsOrPoses& grasps,
                        const std::optional<Given<Hand>>& gripper, const Given<Strings>& touch_links,
                        const Given<std::string>& object_name, const NoMoreKeywords& unknown) {
-             refuse_unknown("ManipulationProblem", unknown, {"group", "world", "object", "T_world_start", "T_world_goal", "grasps", "gripper",
-                                      "touch_links", "object_name"});
+             refuse_unknown("ManipulationProblem", unknown,
+                            {"group", "world", "object", "T_world_start", "T_world_goal", "grasps", "gripper",
+                             "touch_links", "object_name"});
              ManipulationProblem problem{with_sampled_pairs(taken(group, "group")),
                                          taken(world, "world"),
                                          object_argument(object),

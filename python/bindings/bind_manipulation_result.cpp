@@ -121,7 +121,8 @@ void bind_stats(py::module_& m) {
   using S = ManipulationStats;
   py::class_<S>(m, "ManipulationStats", "What a search of plan_manipulation took.")
       .def_readonly("ik_seconds", &S::ik_seconds, "Time for the arm configurations at start and goal [s].")
-      .def_readonly("roadmap_seconds", &S::roadmap_seconds, "Time for building a roadmap [s]; 0: it was given or not used.")
+      .def_readonly("roadmap_seconds", &S::roadmap_seconds,
+                    "Time for building a roadmap [s]; 0: it was given or not used.")
       .def_readonly("search_seconds", &S::search_seconds, "Time for all the rest [s].")
       .def_readonly("graph_searches", &S::graph_searches, "Searches of prm_star_mg's per-grasp graphs.")
       .def_readonly("nodes_opened", &S::nodes_opened,

@@ -125,13 +125,13 @@ void bind_problem(py::module_& m) {
                                 "    problem = mg.load_scenario(\"storeroom.yaml\").problem()\n"
                                 "    database = mg.ReachDatabase.build(problem.arm)\n"
                                 "    plan = mg.base.plan_part_supply(problem, database)")
-      .def(py::init([](const Robot& robot, const JointGroup& arm, const Hand& gripper, const World& scene,
+      .def(py::init([](const Robot& robot, const JointGroup& arm, const Hand& gripper, const World& world,
                        std::vector<Tray> trays, const ArrayLike& home, const ArrayLike& start, const ArrayLike& goal,
                        const PlaceRegion& place_region, const py::kwargs& options) {
              PartSupplyProblem problem{robot,
                                        arm,
                                        gripper,
-                                       scene,
+                                       world,
                                        std::move(trays),
                                        vector_argument(home, "home", arm.size()),
                                        vector3_argument(start, "start"),
@@ -141,16 +141,16 @@ void bind_problem(py::module_& m) {
              problem.check();
              return problem;
            }),
-           py::arg("robot"), py::arg("arm"), py::arg("gripper"), py::arg("scene"), py::arg("trays"), py::arg("home"),
+           py::arg("robot"), py::arg("arm"), py::arg("gripper"), py::arg("world"), py::arg("trays"), py::arg("home"),
            py::arg("start"), py::arg("goal"), py::arg("place_region"),
-           ("`scene` is without the parts; `home` (n,) is the arm's configuration while driving; `start` and `goal` "
+           ("`world` is without the parts; `home` (n,) is the arm's configuration while driving; `start` and `goal` "
             "(3,) are base\nposes x, y, theta [m, m, rad]. Raises InvalidInput naming the field that breaks its rule." +
             option_help(supply_fields()))
                .c_str())
       .def_readonly("robot", &PartSupplyProblem::robot, "The robot.")
       .def_readonly("arm", &PartSupplyProblem::arm, "The arm, without base joints.")
       .def_readonly("gripper", &PartSupplyProblem::gripper, "The gripper of the arm.")
-      .def_readonly("scene", &PartSupplyProblem::scene, "Obstacles, tables and trays, without the parts.")
+      .def_readonly("world", &PartSupplyProblem::world, "Obstacles, tables and trays, without the parts.")
       .def_readonly("trays", &PartSupplyProblem::trays, "The trays with their parts.")
       .def_readonly("home", &PartSupplyProblem::home, "Arm configuration while driving (n,), fingers closed.")
       .def_readonly("start", &PartSupplyProblem::start, "Base pose at the beginning (3,): x, y, theta [m, m, rad].")

@@ -30,12 +30,13 @@ const std::vector<OptionField<DriveByOptions>>& drive_by_fields() {
       option<O>("waypoints", &O::waypoints, "waypoints of the whole motion"),
       option<O>("seeds", &O::seeds, "guesses tried until one leads to a solution"),
       option<O>("solutions", &O::solutions, "solutions compared for one grasp assignment"),
-      option<O>(
-          "grasp_assignments", &O::grasp_assignments,
-          "assignments of a candidate to each task that are planned; the fastest motion is returned; 1: only the one that "
-          "looks quickest"),
+      option<O>("grasp_assignments", &O::grasp_assignments,
+                "assignments of a candidate to each task that are planned; the fastest motion is returned; 1: only the "
+                "one that "
+                "looks quickest"),
       option<O>("goal_configurations", &O::goal_configurations, "configurations sought per candidate"),
-      option<O>("iterations", &O::iterations, "iterations of all solves together; once they are spent no other solve begins"),
+      option<O>("iterations", &O::iterations,
+                "iterations of all solves together; once they are spent no other solve begins"),
       option<O>("time_limit", &O::time_limit, "wall-clock cap [s]"),
       option<O>("jerk_time", &O::jerk_time, "accelerations may go from 0 to their limit in no less [s]; 0: no limit"),
       option<O>("collisions", &O::collisions, "the robot keeps clear of the world and of itself"),
@@ -45,11 +46,13 @@ const std::vector<OptionField<DriveByOptions>>& drive_by_fields() {
       option<O>("tolerance", &O::trajectory, &W::tolerance, "relative optimality"),
       option<O>("max_iterations", &O::trajectory, &W::max_iterations,
                 "iterations of one solve; an optimisation takes at most 1 + refinements solves"),
-      option<O>("solve_time_limit", &O::trajectory, &W::time_limit, "wall-clock cap of one optimisation, which has 1 + refinements solves at most [s]"),
+      option<O>("solve_time_limit", &O::trajectory, &W::time_limit,
+                "wall-clock cap of one optimisation, which has 1 + refinements solves at most [s]"),
       option<O>("smoothing", &O::trajectory, &W::smoothing,
                 "weight of the mean square of accelerations over their limits [s]"),
       option<O>("margin", &O::trajectory, &W::margin, "distance to keep from obstacles and from oneself [m]"),
-      option<O>("constraint_distance", &O::trajectory, &W::constraint_distance, "pairs of bodies nearer than this are constrained [m]"),
+      option<O>("constraint_distance", &O::trajectory, &W::constraint_distance,
+                "pairs of bodies nearer than this are constrained [m]"),
       option<O>("refinements", &O::trajectory, &W::refinements, "times that collision constraints may be added")};
   return fields;
 }
@@ -127,7 +130,8 @@ void bind_drive_by_task(py::module_& m) {
       "tolerance: (6,) along x, y, z [m] and about them [rad] of the pose's own frame; free_axes: names of axes along "
       "or\nabout which any error is allowed, of x, y, z, roll, pitch, yaw; max_tool_speed [m/s] at the task; dwell [s] "
       "for which\nthe tool's pose is kept, e.g. while a gripper closes; object: name of the world's object that is "
-      "attached afterwards:\nan obstacle for the whole robot, the open hand included, until then; the fingers alone may "
+      "attached afterwards:\nan obstacle for the whole robot, the open hand included, until then; the fingers alone "
+      "may "
       "touch it during the dwell.\nWhat rests on something counts as 1 mm higher once it is attached.\n\n"
       "push: a gripper that closes while the hand moves on (P1 4.3): dict of push_grasp's keywords, approach (3,), an "
       "axis of\nthe tip's frame, and free_length [m], the straight way before the finger tips reach the object. "
@@ -136,8 +140,8 @@ void bind_drive_by_task(py::module_& m) {
                        const std::vector<std::string>& free_axes, const OptionalNumber& max_tool_speed, double dwell,
                        const std::string& object, const std::optional<PushKeywords>& push,
                        const NoMoreKeywords& unknown) {
-             refuse_unknown("DriveByTask", unknown, {"T_world_tip", "tolerance", "free_axes", "max_tool_speed", "dwell",
-                                                     "object", "push"});
+             refuse_unknown("DriveByTask", unknown,
+                            {"T_world_tip", "tolerance", "free_axes", "max_tool_speed", "dwell", "object", "push"});
              DriveByTask task;
              task.candidates = candidates_argument(T_world_tip);
              if (!tolerance.is_none()) task.tolerance = vector_argument(tolerance, "tolerance", 6);
@@ -156,15 +160,16 @@ void bind_drive_by_task(py::module_& m) {
              return task;
            }),
            py::arg("T_world_tip"), py::kw_only(), py::arg("tolerance") = py::none(),
-           py::arg("free_axes") = std::vector<std::string>{}, py::arg("max_tool_speed") = py::none(), py::arg("dwell") = 0.0,
-           py::arg("object") = "", py::arg("push") = py::none(),
+           py::arg("free_axes") = std::vector<std::string>{}, py::arg("max_tool_speed") = py::none(),
+           py::arg("dwell") = 0.0, py::arg("object") = "", py::arg("push") = py::none(),
            "The class says what the arguments mean; raises InvalidInput naming one that breaks its rule.")
       .def_property_readonly(
           "candidates", [](const DriveByTask& t) { return to_array(t.candidates); }, "(m, 4, 4)")
       .def_readonly("max_tool_speed", &DriveByTask::max_tool_speed,
                     "Fastest tool at the task [m/s]; infinite: no limit.")
       .def_readonly("dwell", &DriveByTask::dwell, "Time for which the tool's pose is kept [s].")
-      .def_readonly("object", &DriveByTask::object, "Name of the world's object that is attached afterwards; empty: none.")
+      .def_readonly("object", &DriveByTask::object,
+                    "Name of the world's object that is attached afterwards; empty: none.")
       .def_property_readonly(
           "push",
           [](const DriveByTask& t) -> OptionalPush {

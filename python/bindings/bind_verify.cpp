@@ -65,7 +65,8 @@ void bind_checked_parts(py::module_& m) {
            }),
            py::arg("kind"), py::arg("opening"), py::arg("attached"), py::arg("times"), py::arg("positions"),
            py::arg("velocities"), py::arg("accelerations") = py::none(),
-           "`kind`: transit, approach, lift, transfer or retreat; `opening` of the fingers [m]; `attached`: the part is; "
+           "`kind`: transit, approach, lift, transfer or retreat; `opening` of the fingers [m]; `attached`: the part "
+           "is; "
            "`times` "
            "(k,) [s];\n`positions`, `velocities` and, where given, `accelerations` (k, n) of the arm's joints.");
   py::class_<CheckedPick>(m, "CheckedPick", "One pick of a plan.")

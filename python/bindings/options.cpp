@@ -21,6 +21,7 @@ const std::map<std::string, std::string> kRenamed = {{"attempt_time_limit", "sol
                                                      {"look_out", "constraint_distance"},
                                                      {"max_joint_step", "jump_threshold"},
                                                      {"max_samples", "max_iterations"},
+                                                     {"scene", "world"},
                                                      {"stands", "goal_configurations"},
                                                      {"tool_cone", "orientation_constraint"}};
 
@@ -28,8 +29,8 @@ const std::map<std::string, std::string> kRenamed = {{"attempt_time_limit", "sol
 
 std::string nearest_name(const std::string& wrong, const std::vector<std::string>& known) {
   const auto renamed = kRenamed.find(wrong);
-  // These two are arguments of their own and not among the options.
-  const bool argument = wrong == "improved" || wrong == "tool_cone";
+  // These are arguments of their own and not among the options.
+  const bool argument = wrong == "improved" || wrong == "tool_cone" || wrong == "scene";
   if (renamed != kRenamed.end() && (argument || std::find(known.begin(), known.end(), renamed->second) != known.end()))
     return "; it is called " + renamed->second + " now";
   const py::list matches = py::module_::import("difflib").attr("get_close_matches")(wrong, known, 1, 0.5);

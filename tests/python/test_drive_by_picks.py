@@ -191,7 +191,7 @@ def test_physics_takes_the_part(passing: mg.part_supply.DriveByPlan, small_plan:
     (done,) = passing.picks
     problem, setup = small_plan.scenario.problem(), small_plan.scenario.setup
     parts = [sim.SimPart(p.name, p.shapes, p.T_world_part, mass=0.1) for p in problem.trays[0].parts]
-    trial = sim.Simulation(setup.robot, problem.scene, parts, gripper=setup.gripper, joints=setup.other_joints)
+    trial = sim.Simulation(setup.robot, problem.world, parts, gripper=setup.gripper, joints=setup.other_joints)
     # At half speed: plans know limits of joints, not of their motors, which cannot follow this one at full speed.
     how: dict[str, Any] = {
         "close_at": done.close_at,

@@ -138,7 +138,10 @@ void CollisionTerm::hessian(const double* x, const double* multipliers, double* 
 
 CollisionRows::CollisionRows(std::vector<CollisionChecker*> checkers, std::vector<int> pinned, double margin,
                              double constraint_distance)
-    : checkers_(std::move(checkers)), pinned_(std::move(pinned)), margin_(margin), constraint_distance_(constraint_distance) {
+    : checkers_(std::move(checkers)),
+      pinned_(std::move(pinned)),
+      margin_(margin),
+      constraint_distance_(constraint_distance) {
   for (CollisionChecker* checker : checkers_) {
     if (!checker || bodies_.count(checker) > 0) continue;
     padding_ = std::max(padding_, 2 * checker->world().padding().most() + checker->options().padding);

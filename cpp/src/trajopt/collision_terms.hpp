@@ -45,14 +45,15 @@ class MMGRASP_EXPORT CollisionRows {
  public:
   /// `pinned`: waypoints whose configuration or tool pose is prescribed; bodies that are closer than the margin there
   /// are given what room they have. The paddings of the checkers' worlds are kept beside the margin.
-  CollisionRows(std::vector<CollisionChecker*> checkers, std::vector<int> pinned, double margin, double constraint_distance);
+  CollisionRows(std::vector<CollisionChecker*> checkers, std::vector<int> pinned, double margin,
+                double constraint_distance);
 
   /// Looks along a trajectory; false when nothing collides. Pairs that collide anywhere are constrained from then on
   /// wherever they are within constraint_distance.
   bool look_along(const WholeBodyTrajectory& trajectory);
-  /// `positions`, one per waypoint, are known to be free, also straight between them: what is within constraint_distance of the
-  /// scene there is constrained. With `keeps_sides`, bodies that collide later are pushed apart to the sides on
-  /// which they lie there, so that this motion stays within all constraints.
+  /// `positions`, one per waypoint, are known to be free, also straight between them: what is within
+  /// constraint_distance of the scene there is constrained. With `keeps_sides`, bodies that collide later are pushed
+  /// apart to the sides on which they lie there, so that this motion stays within all constraints.
   void keep_clear(const std::vector<Eigen::VectorXd>& positions, bool keeps_sides);
   void add_to(WholeBodyNlp& nlp, bool diff_drive) const;
 

@@ -32,7 +32,8 @@ void WholeBodyOptions::check() const {
   require(smoothing >= 0 && std::isfinite(smoothing), "smoothing", smoothing, "must be at least 0");
   require(warm_start >= 0 && std::isfinite(warm_start), "warm_start", warm_start, "must be at least 0");
   require(margin >= 0 && std::isfinite(margin), "margin", margin, "must be at least 0");
-  require(constraint_distance > margin && std::isfinite(constraint_distance), "constraint_distance", constraint_distance, "must exceed margin");
+  require(constraint_distance > margin && std::isfinite(constraint_distance), "constraint_distance",
+          constraint_distance, "must exceed margin");
   require(refinements >= 0, "refinements", refinements, "must be at least 0");
 }
 

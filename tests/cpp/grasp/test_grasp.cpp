@@ -26,7 +26,8 @@ TEST(Grasp, SamplersGiveTheirFactorsInOrder) {
     for (const QualityFactor& one : grasp.quality_factors) product *= 0.5 + 0.5 * one.value;
     EXPECT_EQ(grasp.quality, product);
     EXPECT_EQ(grasp.quality_factors[4].name, "clearance");
-    EXPECT_DOUBLE_EQ(grasp.quality_factors[4].value, std::min(1.0, (hand.max_opening - grasp.opening) / 2 / hand.clearance));
+    EXPECT_DOUBLE_EQ(grasp.quality_factors[4].value,
+                     std::min(1.0, (hand.max_opening - grasp.opening) / 2 / hand.clearance));
     EXPECT_TRUE(std::holds_alternative<ContactPairProvenance>(grasp.provenance));
   }
 }

@@ -20,7 +20,7 @@ PickProblem pin_on_table() {
   const PartSupplyProblem room = test::small_storeroom();
   PickProblem problem{room.arm.at(pose_from_planar(Eigen::Vector3d(0.35, -0.1, 0))),
                       room.gripper,
-                      room.scene,
+                      room.world,
                       "pin",
                       test::grasps_from_above(0.03),
                       room.home,
@@ -116,7 +116,7 @@ TEST(Pick, APartOfATrayIsAnObjectLikeAnother) {
   EXPECT_EQ(from_tray.part, wanted);
   const Part& part = room.trays[0].parts[0];
   PickProblem alone{
-      room.arm.at(pose_from_planar(base)), room.gripper, room.scene, part.name, part.grasps, room.home, {}, {}};
+      room.arm.at(pose_from_planar(base)), room.gripper, room.world, part.name, part.grasps, room.home, {}, {}};
   for (const Tray& tray : room.trays)
     alone.world.add(tray.parts[0].name, WorldObject{tray.parts[0].shapes, tray.parts[0].T_world_part});
   alone.options = {room.options.approach_distance, room.options.lift_height, room.options.motion_time_limit,

@@ -18,8 +18,9 @@ struct MMGRASP_EXPORT TourResult {
 };
 
 /// Shortest path start -> all stops -> goal. `lengths` is (n + 2) x (n + 2): stops first, then start, then goal; an
-/// infinite entry means that no path leads from the one to the other. May be asymmetric. Exact up to 15 stops (Held and Karp's dynamic programme); beyond,
-/// a local search with restarts, and a bound by spanning trees and by assignment. Deterministic.
+/// infinite entry means that no path leads from the one to the other. May be asymmetric. Exact up to 15 stops (Held and
+/// Karp's dynamic programme); beyond, a local search with restarts, and a bound by spanning trees and by assignment.
+/// Deterministic.
 MMGRASP_EXPORT TourResult shortest_visiting_tour(const Eigen::MatrixXd& lengths);
 
 }  // namespace mmgrasp

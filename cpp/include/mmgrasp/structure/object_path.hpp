@@ -72,8 +72,8 @@ struct MMGRASP_EXPORT ObjectPathResult {
   /// is given.
   std::vector<int> overloaded;
   /// Cost(C) of P2 3.3.1, zero if and only if solved: the sum of `violations` plus one for each pose in `overloaded`.
-  /// When that sum is zero and there is still no path, the number of pairs of neighbouring poses between which no motion
-  /// is allowed.
+  /// When that sum is zero and there is still no path, the number of pairs of neighbouring poses between which no
+  /// motion is allowed.
   int violation = 0;
   /// One number for each pose: 2 when no arm configuration reaches it, 1 when all that do collide, else 0.
   std::vector<int> violations;
@@ -82,11 +82,11 @@ struct MMGRASP_EXPORT ObjectPathResult {
   int configurations = 0;  ///< Arm configurations found over all poses.
 };
 
-/// Evaluates what one grasp after another costs along the same path; what does not depend on the grasp is prepared once.
-/// For each grasp the cheapest sequence of arm configurations, one at each pose, is found by dynamic programming. Only
-/// the cheapest sequence is checked for collisions; configurations and motions that collide are removed and the next
-/// cheapest is found, until one is free: the same answer as checking every configuration. Not thread-safe; clones share
-/// nothing.
+/// Evaluates what one grasp after another costs along the same path; what does not depend on the grasp is prepared
+/// once. For each grasp the cheapest sequence of arm configurations, one at each pose, is found by dynamic programming.
+/// Only the cheapest sequence is checked for collisions; configurations and motions that collide are removed and the
+/// next cheapest is found, until one is free: the same answer as checking every configuration. Not thread-safe; clones
+/// share nothing.
 ///
 ///     ObjectPathEvaluator evaluator(problem);
 ///     for (const Grasp& grasp : grasps) keep_best(grasp, evaluator.evaluate(grasp));

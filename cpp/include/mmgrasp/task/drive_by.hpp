@@ -36,10 +36,10 @@ struct MMGRASP_EXPORT DriveByTask {
   double max_tool_speed =
       std::numeric_limits<double>::infinity();  ///< Speed limit of the tip at the task [m/s]; > 0 (P1 4.3).
   double dwell = 0;  ///< The tool's pose is kept that long [s], e.g. while a gripper closes; >= 0.
-  /// Object of the world that is attached afterwards, in place of what was attached before; empty: none. It is an obstacle for
-  /// the whole robot, the open hand included, until the task is reached; while the tool dwells there the fingers alone
-  /// may touch it, and once attached it keeps clear of everything. One that rests on something counts as 1 mm higher from
-  /// then on.
+  /// Object of the world that is attached afterwards, in place of what was attached before; empty: none. It is an
+  /// obstacle for the whole robot, the open hand included, until the task is reached; while the tool dwells there the
+  /// fingers alone may touch it, and once attached it keeps clear of everything. One that rests on something counts as
+  /// 1 mm higher from then on.
   std::string object;
   std::optional<DriveByPush> push;  ///< Without dwell, max_tool_speed, tolerance and free axes.
 };

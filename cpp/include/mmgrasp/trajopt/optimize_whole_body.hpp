@@ -30,15 +30,15 @@ struct MMGRASP_EXPORT WholeBodyGuess {
 
 /// Options of optimize_whole_body().
 struct MMGRASP_EXPORT WholeBodyOptions {
-  std::string solver = "ipopt";  ///< A name of nlp_solver_names().
-  double tolerance = 1e-4;       ///< Relative optimality, in (0, 1).
-  int max_iterations = 150;      ///< Iterations of one solve, of which there are at most 1 + refinements; > 0.
-  double time_limit = 600.0;     ///< Wall-clock cap [s], for runs that are not to end by their iterations; > 0.
-  double smoothing = 1e-2;       ///< Weight of the mean square of accelerations over their limits [s]; >= 0.
-  double warm_start = 0;         ///< See NlpOptions.
-  double margin = 0.005;         ///< Distance to keep from obstacles and from oneself [m]; >= 0.
-  double constraint_distance = 0.15;        ///< Pairs of bodies nearer than this are constrained [m]; > margin.
-  int refinements = 6;           ///< Times that collision constraints may be added and the solve repeated; >= 0.
+  std::string solver = "ipopt";       ///< A name of nlp_solver_names().
+  double tolerance = 1e-4;            ///< Relative optimality, in (0, 1).
+  int max_iterations = 150;           ///< Iterations of one solve, of which there are at most 1 + refinements; > 0.
+  double time_limit = 600.0;          ///< Wall-clock cap [s], for runs that are not to end by their iterations; > 0.
+  double smoothing = 1e-2;            ///< Weight of the mean square of accelerations over their limits [s]; >= 0.
+  double warm_start = 0;              ///< See NlpOptions.
+  double margin = 0.005;              ///< Distance to keep from obstacles and from oneself [m]; >= 0.
+  double constraint_distance = 0.15;  ///< Pairs of bodies nearer than this are constrained [m]; > margin.
+  int refinements = 6;                ///< Times that collision constraints may be added and the solve repeated; >= 0.
   void check() const;
 };
 

@@ -206,8 +206,8 @@ struct MMGRASP_EXPORT PlanCheckOptions {
 ///   nothing), `region-incomplete` (cells left out that serve everything: the least number of stops is then not
 ///   proven);
 /// - what only describes: `route-values` (length, turning, duration), `acceleration` (stored ones above the limits or
-///   not those of the velocities), `wrong-values` (robustness rate below what is required or above 1, intersections that
-///   lie elsewhere).
+///   not those of the velocities), `wrong-values` (robustness rate below what is required or above 1, intersections
+///   that lie elsewhere).
 struct MMGRASP_EXPORT Fault {
   std::string code;
   std::string where;    ///< E.g. "pick 3 (A/bracket_02), lift, t = 1.24 s".
@@ -235,7 +235,8 @@ struct MMGRASP_EXPORT PlanCheckResult {
 /// Checks a finished plan against its scenario: the robot read again by urdfdom and assimp, kinematics by KDL,
 /// collisions by FCL, the cover solved again by CBC on discs found by searching the floor. No planner, robot model,
 /// kinematics or collision code of mmgrasp takes part; docs/methods/verify.md lists the little that is shared (poses,
-/// random numbers, threads, closing of meshes). A broken plan gives faults, never an exception; only unusable options throw (InvalidInput). Same answer at any thread count.
+/// random numbers, threads, closing of meshes). A broken plan gives faults, never an exception; only unusable options
+/// throw (InvalidInput). Same answer at any thread count.
 ///
 /// Between samples a motion is the cubic through positions and velocities. Limits on positions hold on all of it (slack
 /// 1e-6), on velocities at the samples (1 %) and between them (5 %), and some motion within 1 % of the acceleration

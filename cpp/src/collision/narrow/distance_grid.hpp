@@ -46,8 +46,8 @@ class MMGRASP_EXPORT DistanceGrid {
   std::size_t index(int i, int j, int k) const { return (static_cast<std::size_t>(i) * count_[1] + j) * count_[2] + k; }
   /// Cells that the triangle may touch become kSurfaceCell.
   void mark(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c);
-  /// Cells that cannot be reached from outside without crossing kSurfaceCell become kSurfaceCell, or kSolidCell where they lie inside
-  /// the solid.
+  /// Cells that cannot be reached from outside without crossing kSurfaceCell become kSurfaceCell, or kSolidCell where
+  /// they lie inside the solid.
   void fill(const Solid& solid);
   /// Distance of the centres of kFree cells to the mesh where that is at most `band`; infinite elsewhere [m].
   std::vector<float> centre_distances(const TriangleMesh& mesh, double band) const;

@@ -14,9 +14,9 @@ namespace {
 /// What the estimate of a volume may be wrong by, as a share of the joined hull.
 constexpr double kVolumeError = 0.004;
 
-/// Two regions also join when at least the share kMinShareOnHull of each lies on the hull of both: flat sides of one box
-/// have no volume of their own. A face lies on the hull when it is no deeper in it than kMaxHullDepth times the cube
-/// root of the hull's volume.
+/// Two regions also join when at least the share kMinShareOnHull of each lies on the hull of both: flat sides of one
+/// box have no volume of their own. A face lies on the hull when it is no deeper in it than kMaxHullDepth times the
+/// cube root of the hull's volume.
 constexpr double kMinShareOnHull = 0.95, kMaxHullDepth = 0.005;
 /// Most faces of a region whose depth is measured for that; they are spread over its area.
 constexpr std::size_t kMaxFacesMeasured = 300;

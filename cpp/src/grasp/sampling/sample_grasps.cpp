@@ -48,7 +48,7 @@ class Judge {
 
   /// `tool` is the origin of the tool frame in the object's frame.
   std::vector<QualityFactor> operator()(const ContactPair& pair, const Eigen::Vector3d& approach,
-                                      const Eigen::Vector3d& tool) const {
+                                        const Eigen::Vector3d& tool) const {
     return {half("alignment", pair.alignment), half("centring", centring(pair)),
             half("support", support(pair, approach)), half("insertion", insertion(approach, tool)),
             half("clearance", clearance(pair.width))};

@@ -11,7 +11,8 @@
 namespace mmgrasp {
 namespace {
 
-constexpr double kMaxStep = 1e-6;  // Largest step between the end of a motion and the next one's begin [rad, m, rad/s, m/s].
+constexpr double kMaxStep =
+    1e-6;  // Largest step between the end of a motion and the next one's begin [rad, m, rad/s, m/s].
 
 void append_values(std::string& text, const double* values, Eigen::Index count) {
   for (Eigen::Index i = 0; i < count; ++i) {

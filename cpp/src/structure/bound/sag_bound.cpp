@@ -25,7 +25,8 @@ std::vector<Place> places_of(const BeamFrame& frame, int clamped) {
       if (known[frame.members[m].nodes[end]]++) continue;
       places.push_back({m, end ? length : 0});
     }
-    for (int k = 1; m != clamped && k <= kPlacesPerMember; ++k) places.push_back({m, length * k / (kPlacesPerMember + 1)});
+    for (int k = 1; m != clamped && k <= kPlacesPerMember; ++k)
+      places.push_back({m, length * k / (kPlacesPerMember + 1)});
   }
   return places;
 }

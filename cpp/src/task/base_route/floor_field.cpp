@@ -13,10 +13,10 @@
 namespace mmgrasp::detail {
 namespace {
 
-constexpr double kMargin = 2.0;      // [m] around what is in the scene
-constexpr double kMaxCells = 40000;  // Largest number of cells of a floor.
+constexpr double kMargin = 2.0;            // [m] around what is in the scene
+constexpr double kMaxCells = 40000;        // Largest number of cells of a floor.
 constexpr double kConnectionRadius = 2.0;  // A place is connected with the cells within this radius, in cells.
-constexpr double kCheckStep = 0.02;  // [m]; nothing is swept here, BaseClearance wants one
+constexpr double kCheckStep = 0.02;        // [m]; nothing is swept here, BaseClearance wants one
 
 /// Eight axes of driving, each both ways.
 constexpr std::array<std::array<int, 2>, 8> kAxes = {
@@ -103,8 +103,10 @@ bool FloorField::passable(int ix, int iy, int direction) const {
 template <class Visit>
 void FloorField::around(const Eigen::Vector2d& place, const Visit& visit) const {
   const Eigen::Vector2d at = (place - bounds_.min()) / resolution_;
-  for (int iy = static_cast<int>(at.y() - kConnectionRadius); iy <= static_cast<int>(at.y() + kConnectionRadius); ++iy) {
-    for (int ix = static_cast<int>(at.x() - kConnectionRadius); ix <= static_cast<int>(at.x() + kConnectionRadius); ++ix) {
+  for (int iy = static_cast<int>(at.y() - kConnectionRadius); iy <= static_cast<int>(at.y() + kConnectionRadius);
+       ++iy) {
+    for (int ix = static_cast<int>(at.x() - kConnectionRadius); ix <= static_cast<int>(at.x() + kConnectionRadius);
+         ++ix) {
       if (ix < 0 || iy < 0 || ix >= nx_ || iy >= ny_ || free_[cell(ix, iy)] == 0) continue;
       const double distance = (middle(ix, iy) - place).norm();
       if (distance <= kConnectionRadius * resolution_) visit(cell(ix, iy), distance);

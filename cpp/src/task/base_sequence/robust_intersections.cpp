@@ -10,7 +10,7 @@
 namespace mmgrasp {
 namespace {
 
-constexpr double kRadiusSlack = 1e-9;  // [m]: a disc of exactly the least radius counts.
+constexpr double kRadiusSlack = 1e-9;      // [m]: a disc of exactly the least radius counts.
 constexpr std::size_t kMaxTooSmall = 200;  // Most of Intersections::too_small that are kept.
 
 using Words = std::vector<std::uint64_t>;

@@ -16,7 +16,7 @@ namespace {
 using Eigen::VectorXd;
 
 constexpr double kMinBaseToTool = 0.35, kMaxBaseToTool = 1.1;  // distance along the floor of the bases tried [m]
-constexpr double kHeadingSpread = 0.6;      // deviation from the direction of travel [rad]
+constexpr double kHeadingSpread = 0.6;                         // deviation from the direction of travel [rad]
 constexpr double kSameConfiguration = 0.3;  // configurations closer than this in every value count as one [rad or m]
 constexpr int kRounds = 8;                  // rounds of tries while nothing is found
 

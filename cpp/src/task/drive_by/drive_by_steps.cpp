@@ -99,7 +99,8 @@ void check_tasks(const std::vector<DriveByTask>& tasks, const World& world) {
       require(task.tolerance[k] >= 0 && std::isfinite(task.tolerance[k]),
               field + ".tolerance[" + std::to_string(k) + "]", task.tolerance[k], "must be at least 0 and finite");
     }
-    require(task.free_axes.size() == 6, field + ".free_axes", static_cast<double>(task.free_axes.size()), "must have 6 entries");
+    require(task.free_axes.size() == 6, field + ".free_axes", static_cast<double>(task.free_axes.size()),
+            "must have 6 entries");
     require(task.max_tool_speed > 0, field + ".max_tool_speed", task.max_tool_speed, "must be positive");
     require(task.object.empty() || world.objects().count(task.object) > 0, field + ".object", "'" + task.object + "'",
             "must be an object of the world");

@@ -53,7 +53,7 @@ void check_trays(const PartSupplyProblem& problem) {
     for (const Part& part : tray.parts) {
       require(!part.name.empty() && part_names.insert(part.name).second, "part name", "'" + part.name + "'",
               "must not be empty or used twice");
-      require(!problem.scene.has(part.name), "part name", "'" + part.name + "'",
+      require(!problem.world.has(part.name), "part name", "'" + part.name + "'",
               "is in use for an object of the scene");
       check_part(part, tray.name);
       for (const Grasp& grasp : part.grasps) {

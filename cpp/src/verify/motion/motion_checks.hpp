@@ -9,7 +9,7 @@ namespace mmgrasp::verify::detail {
 // What motions of the arm alone and of base and arm are asked for.
 
 constexpr double kMaxStep = 1e-6;  ///< Largest step where motions join [rad or m].
-constexpr double kRest = 1e-3;  ///< Speed that counts as rest [rad/s or m/s].
+constexpr double kRest = 1e-3;     ///< Speed that counts as rest [rad/s or m/s].
 
 /// Largest entry, whatever its sign.
 inline double largest_of(const Eigen::VectorXd& values) {

@@ -43,7 +43,7 @@ double piece_time(double driven, double turned, const BaseLimits& limits, double
 
 /// Length and turning must be the poses', the duration that of a base which rests at each of them.
 bool values_hold(const CheckedLegValues& said, const std::vector<Eigen::Vector3d>& poses, BaseKind base,
-                  const BaseLimits& limits) {
+                 const BaseLimits& limits) {
   double speed = limits.linear_velocity, turning_rate = limits.angular_velocity;
   if (base == BaseKind::diff_drive) {  // a turn on the spot drives the wheels at half their separation
     speed = std::min(speed, limits.wheel_velocity);

@@ -15,7 +15,7 @@ using Configurations = std::vector<Eigen::VectorXd>;
 
 constexpr std::size_t kMaxPairs = 64;          // Pairs of turns for each start and goal,
 constexpr std::size_t kMaxPairsUnbounded = 8;  // ... and while no path bounds them.
-constexpr double kSameConfiguration = 1e-9;                 // Nearer configurations are the same [rad or m].
+constexpr double kSameConfiguration = 1e-9;    // Nearer configurations are the same [rad or m].
 
 /// Turns of one joint at the start and at the goal.
 struct TurnPair {
@@ -83,8 +83,9 @@ bool any_turns(const std::vector<Values>& all) {
 }
 
 void add_new(Configurations& all, const Eigen::VectorXd& q) {
-  const bool known = std::any_of(
-      all.begin(), all.end(), [&](const Eigen::VectorXd& other) { return (other - q).cwiseAbs().maxCoeff() < kSameConfiguration; });
+  const bool known = std::any_of(all.begin(), all.end(), [&](const Eigen::VectorXd& other) {
+    return (other - q).cwiseAbs().maxCoeff() < kSameConfiguration;
+  });
   if (!known) all.push_back(q);
 }
 

@@ -119,7 +119,7 @@ ToolConstraint constraint_at(const DriveByStep& step, int candidate, int waypoin
   tool.waypoint = waypoint;
   tool.T_world_tip = step.candidates[candidate];
   for (int k = 0; k < 6; ++k) {
-    const double slack = step.free[k] ? kInfinity : step.tolerance[k];
+    const double slack = step.free_axes[k] ? kInfinity : step.tolerance[k];
     tool.lower[k] = -slack;
     tool.upper[k] = slack;
   }

@@ -1,10 +1,10 @@
 """The dicts that results of the C++ library hold, as types: what keys there are, and what they mean.
 
-    from mmgrasp.records import RobotReport
+from mmgrasp.records import RobotReport
 
-    def print_meshes(report: RobotReport) -> None:
-        for mesh in report["meshes"]:
-            print(mesh["path"], mesh["triangles"])
+def print_meshes(report: RobotReport) -> None:
+    for mesh in report["meshes"]:
+        print(mesh["path"], mesh["triangles"])
 """
 
 from __future__ import annotations

@@ -11,6 +11,7 @@
 #include "mmgrasp/structure/optimize_grasp.hpp"
 #include "structure/object_path/path_bound.hpp"
 #include "support/puma_arm.hpp"
+#include "turning_path.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -176,30 +177,11 @@ TEST(SagBound, StaysBelowAndComesNear) {
   }
 }
 
-ObjectPathProblem turning_path(int poses) {
-  static const test::PumaArm arm;
-  ObjectPathProblem problem{arm.group(), {}, figure_3_4().shapes(), {}, {}, {"l5", "l6"}, figure_3_4_frame(), "pipe"};
-  for (int i = 0; i < poses; ++i) {
-    const double turn = -0.3 + 0.12 * i;
-    problem.T_world_object.push_back(
-        pose_from_xyz_rpy({0.5 * std::cos(turn), 0.5 * std::sin(turn), 0.45 + 0.01 * i}, {0, 0.05 * i, turn}));
-  }
-  problem.world.add("post", Cylinder{0.05, 0.6}, pose_from_xyz_rpy({0.25, 0.22, 0.3}, {0, 0, 0}));
-  return problem;
-}
-
-PipeGraspOptions tool() {
-  PipeGraspOptions options;
-  options.approach = Vector3d::UnitZ();
-  options.closing = Vector3d::UnitX();
-  return options;
-}
-
 TEST(PathBound, NoGraspOfABoxCostsLess) {
   const ObjectPathProblem problem = turning_path(6);
   const Pipe pipe = figure_3_4();
   const ObjectPathOptions options;
-  const detail::PathBound bound(problem, pipe, options, tool());
+  const detail::PathBound bound(problem, pipe, options, pipe_tool());
   ObjectPathEvaluator evaluator(problem, options);
   Rng rng(11);
   int feasible = 0, tight = 0;
@@ -216,7 +198,7 @@ TEST(PathBound, NoGraspOfABoxCostsLess) {
     const auto found = bound.graph(box).bound();
     for (int k = 0; k < 4; ++k) {
       const Grasp grasp = place_pipe_grasp(pipe, box.section, box.length + rng.uniform(-1, 1) * box.half_length,
-                                           box.angle + rng.uniform(-1, 1) * box.half_angle, box.flipped, tool());
+                                           box.angle + rng.uniform(-1, 1) * box.half_angle, box.flipped, pipe_tool());
       const ObjectPathResult result = evaluator.evaluate(grasp);
       if (result.outcome != Outcome::solved) continue;
       ++feasible;
@@ -233,7 +215,7 @@ TEST(BranchAndBound, ProvesTheOptimumOfAGrid) {
   const Pipe pipe = figure_3_4();
   GraspSearchOptions options;
   options.algorithm = "branch_and_bound";
-  options.grasp = tool();
+  options.grasp = pipe_tool();
   options.population.max_evaluations = 300;
   const GraspOptimum best = optimize_grasp(problem, pipe, {}, options);
   ASSERT_EQ(best.outcome, Outcome::solved);
@@ -245,7 +227,8 @@ TEST(BranchAndBound, ProvesTheOptimumOfAGrid) {
     for (double at = 0.02; at <= pipe.length(section) - 0.02 + 1e-9; at += 0.005) {
       for (int degree = -180; degree < 180; degree += 2) {
         for (const bool flip : {false, true}) {
-          const auto found = evaluator.evaluate(place_pipe_grasp(pipe, section, at, degree * M_PI / 180, flip, tool()));
+          const auto found =
+              evaluator.evaluate(place_pipe_grasp(pipe, section, at, degree * M_PI / 180, flip, pipe_tool()));
           if (found.outcome == Outcome::solved) grid = std::min(grid, found.cost);
         }
       }
@@ -266,7 +249,7 @@ TEST(BranchAndBound, ProvesThatNoGraspWillDo) {
   problem.T_world_object[4].translation() = Vector3d(4, 0, 0);
   GraspSearchOptions options;
   options.algorithm = "branch_and_bound";
-  options.grasp = tool();
+  options.grasp = pipe_tool();
   options.population.max_evaluations = 50;
   const GraspOptimum none = optimize_grasp(problem, figure_3_4(), {}, options);
   EXPECT_EQ(none.outcome, Outcome::infeasible);

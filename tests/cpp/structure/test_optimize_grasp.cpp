@@ -9,32 +9,13 @@
 #include "beam_frames.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "structure/object_path/grasp_variables.hpp"
-#include "support/puma_arm.hpp"
+#include "turning_path.hpp"
 
 namespace mmgrasp {
 namespace {
 
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-
-ObjectPathProblem arc(int poses) {
-  static const test::PumaArm arm;
-  ObjectPathProblem problem{arm.group(), {}, figure_3_4().shapes(), {}, {}, {"l5", "l6"}, figure_3_4_frame(), "pipe"};
-  for (int i = 0; i < poses; ++i) {
-    const double turn = -0.3 + 0.12 * i;
-    problem.T_world_object.push_back(
-        pose_from_xyz_rpy({0.5 * std::cos(turn), 0.5 * std::sin(turn), 0.45 + 0.01 * i}, {0, 0.05 * i, turn}));
-  }
-  problem.world.add("post", Cylinder{0.05, 0.6}, pose_from_xyz_rpy({0.25, 0.22, 0.3}, {0, 0, 0}));
-  return problem;
-}
-
-PipeGraspOptions tool() {
-  PipeGraspOptions options;
-  options.approach = Vector3d::UnitZ();
-  options.closing = Vector3d::UnitX();
-  return options;
-}
 
 /// Least cost over a grid of grasps.
 double least_of_grid(const ObjectPathProblem& problem, double step, double turn) {
@@ -45,7 +26,8 @@ double least_of_grid(const ObjectPathProblem& problem, double step, double turn)
     for (double at = 0.02; at <= pipe.length(section) - 0.02 + 1e-9; at += step) {
       for (double angle = -M_PI; angle < M_PI; angle += turn) {
         for (const bool flip : {false, true}) {
-          const ObjectPathResult found = evaluator.evaluate(place_pipe_grasp(pipe, section, at, angle, flip, tool()));
+          const ObjectPathResult found =
+              evaluator.evaluate(place_pipe_grasp(pipe, section, at, angle, flip, pipe_tool()));
           if (found.outcome == Outcome::solved) least = std::min(least, found.cost);
         }
       }
@@ -55,13 +37,13 @@ double least_of_grid(const ObjectPathProblem& problem, double step, double turn)
 }
 
 TEST(OptimizeGrasp, EveryAlgorithmComesNearTheGridsBest) {
-  const ObjectPathProblem problem = arc(6);
+  const ObjectPathProblem problem = turning_path(6);
   const double grid = least_of_grid(problem, 0.01, M_PI / 36);
   ASSERT_TRUE(std::isfinite(grid));
   for (const std::string& name : population_search_names()) {
     GraspSearchOptions options;
     options.algorithm = name;
-    options.grasp = tool();
+    options.grasp = pipe_tool();
     const GraspOptimum best = optimize_grasp(problem, figure_3_4(), {}, options);
     ASSERT_EQ(best.outcome, Outcome::approximate) << name;
     EXPECT_LE(best.path.cost, 1.05 * grid) << name;
@@ -75,8 +57,8 @@ TEST(OptimizeGrasp, EveryAlgorithmComesNearTheGridsBest) {
 
 TEST(OptimizeGrasp, TargetEndsIt) {
   GraspSearchOptions options;
-  options.grasp = tool();
-  const ObjectPathProblem problem = arc(6);
+  options.grasp = pipe_tool();
+  const ObjectPathProblem problem = turning_path(6);
   const double found = optimize_grasp(problem, figure_3_4(), {}, options).path.cost;
   options.population.target = 1.2 * found;
   options.population.seed = 4;
@@ -88,8 +70,8 @@ TEST(OptimizeGrasp, TargetEndsIt) {
 
 TEST(OptimizeGrasp, FrontHoldsWhatNothingBeats) {
   GraspSearchOptions options;
-  options.grasp = tool();
-  const GraspOptimum best = optimize_grasp(arc(6), figure_3_4(), {}, options);
+  options.grasp = pipe_tool();
+  const GraspOptimum best = optimize_grasp(turning_path(6), figure_3_4(), {}, options);
   ASSERT_GT(best.front.size(), 1u);
   EXPECT_TRUE(std::is_sorted(best.feasible.begin(), best.feasible.end(),
                              [](const auto& a, const auto& b) { return a.grasp.cost < b.grasp.cost; }));
@@ -107,10 +89,10 @@ TEST(OptimizeGrasp, FrontHoldsWhatNothingBeats) {
 }
 
 TEST(OptimizeGrasp, OutOfReachSaysWhere) {
-  ObjectPathProblem problem = arc(6);
+  ObjectPathProblem problem = turning_path(6);
   problem.T_world_object[4].translation() = Vector3d(4, 0, 0);
   GraspSearchOptions options;
-  options.grasp = tool();
+  options.grasp = pipe_tool();
   options.population.max_evaluations = 200;
   const GraspOptimum none = optimize_grasp(problem, figure_3_4(), {}, options);
   EXPECT_EQ(none.outcome, Outcome::not_found);
@@ -121,7 +103,7 @@ TEST(OptimizeGrasp, OutOfReachSaysWhere) {
 }
 
 TEST(GraspVariables, NeighboursGoWhereTheirStrategySays) {
-  const detail::GraspVariables grasps(figure_3_4(), tool());
+  const detail::GraspVariables grasps(figure_3_4(), pipe_tool());
   Rng rng(3);
   // Section 3 begins at the node where sections 2 (its end) and 4 (its begin) meet it.
   VectorXd x(4);

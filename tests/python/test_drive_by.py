@@ -176,6 +176,7 @@ def test_best_iterate_when_time_ends(robot: mg.Robot, group: mg.robot.JointGroup
         ({"waypoints": 3}, "waypoints"),
         ({"solver": "snopt"}, "ipopt, slsqp"),
         ({"smooting": 1}, "smoothing"),
+        ({"look_out": 0.2}, "it is called constraint_distance now"),
         ({"tolerance": 0}, "tolerance"),
         ({"iterations": 0}, "iterations"),
         ({"grasp_assignments": 0}, "grasp_assignments"),

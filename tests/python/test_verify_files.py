@@ -34,6 +34,28 @@ def test_texts_that_are_no_plan(tmp_path: Path, text: str, piece: str) -> None:
         mg.verify_plan(tmp_path / "plan.json")
 
 
+def test_a_plan_of_an_older_version_brings_the_new_names(tmp_path: Path) -> None:
+    old = {
+        "format": "mmgrasp-plan",
+        "version": 3,
+        "lost_intersections": [],
+        "picks": [{"motions": [{"holding": True}]}],
+    }
+    (tmp_path / "plan.json").write_text(json.dumps(old))
+    names = "reads version 4: holding is attached, lost_intersections is too_small_intersections now"
+    with pytest.raises(mg.InvalidInput, match=names):
+        mg.verify_plan(tmp_path / "plan.json")
+
+
+def test_a_key_that_has_a_new_name_brings_it(tmp_path: Path, small_plan_dict: dict[str, Any]) -> None:
+    plan = copy.deepcopy(small_plan_dict)
+    motion = plan["picks"][0]["motions"][2]
+    motion["holding"] = motion.pop("attached")
+    (tmp_path / "plan.json").write_text(json.dumps(plan))
+    with pytest.raises(mg.InvalidInput, match="holding"):
+        mg.verify_plan(tmp_path / "plan.json")
+
+
 @pytest.mark.parametrize(
     ("path", "value"),
     [

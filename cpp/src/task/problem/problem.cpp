@@ -100,7 +100,7 @@ void PartSupplyProblem::check() const {
   require(place_region.size.allFinite() && place_region.size.minCoeff() > 0, "place_region.size",
           place_region.size.minCoeff(), "must be positive");
   require_not_negative(place_region.drop_height, "place_region.drop_height");
-  require(scene.attached().empty(), "scene", "an attached object", "must hold nothing attached at the start");
+  require(world.attached().empty(), "world", "an attached object", "must hold nothing attached at the start");
   check_trays(*this);
 }
 

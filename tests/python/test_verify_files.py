@@ -50,9 +50,9 @@ def test_a_plan_of_an_older_version_brings_the_new_names(tmp_path: Path) -> None
 def test_a_key_that_has_a_new_name_brings_it(tmp_path: Path, small_plan_dict: dict[str, Any]) -> None:
     plan = copy.deepcopy(small_plan_dict)
     motion = plan["picks"][0]["motions"][2]
-    motion["holding"] = motion.pop("attached")
+    motion["holding"] = motion["attached"]
     (tmp_path / "plan.json").write_text(json.dumps(plan))
-    with pytest.raises(mg.InvalidInput, match="holding"):
+    with pytest.raises(mg.InvalidInput, match="holding: unknown key; it is called attached now"):
         mg.verify_plan(tmp_path / "plan.json")
 
 

@@ -90,7 +90,7 @@ TEST_F(BaseRegions, CountersEqualABruteForceRecount) {
 /// agree.
 TEST_F(BaseRegions, CellsAreFeasibleForAnotherIk) {
   Rng rng(5);
-  World world = problem_->scene;
+  World world = problem_->world;
   for (const Tray& tray : problem_->trays) {
     for (const Part& part : tray.parts) world.add(part.name, part.shapes[0].shape, part.T_world_part);
   }

@@ -124,24 +124,33 @@ def on_all_cores(run: Callable[[int], Any], runs: int) -> list[Any]:
         return list(pool.map(run, range(runs)))
 
 
-def runs_of(pipe: str, method: str, setting: int, runs: int, seed: int, target: float) -> dict[str, Any]:
-    """Runs that differ in their seed; each ends at the target or when the budget is spent."""
+def runs_of(
+    pipe: str, method: str, settings: list[int], runs: int, seed: int, target: float
+) -> dict[str, list[dict[str, Any]]]:
+    """For each setting runs that differ in their seed; each ends at the target or when the budget is spent."""
 
-    def one(run: int) -> tuple[Any, float]:
+    def one(number: int) -> tuple[Any, float]:
         begun = time.perf_counter()
+        setting, run = settings[number // runs], number % runs
         seeds = 10_000 * seed + 100 * setting + run
         result = search(pipe, max_evaluations=BUDGET, target=target, seed=seeds, **options_of(method, setting))
         return result, time.perf_counter() - begun
 
-    done = on_all_cores(one, runs)
+    done = on_all_cores(one, runs * len(settings))
+    by_setting = [(setting, done[i * runs : (i + 1) * runs]) for i, setting in enumerate(settings)]
     return {
-        "pipe": pipe,
-        "method": method,
-        "setting": setting,
-        "evaluations": [result.evaluations for result, _ in done],
-        "seconds": [seconds for _, seconds in done],
-        "cost": [result.path.cost if result.grasp is not None else None for result, _ in done],
-        "solved": [result.outcome == Outcome.solved for result, _ in done],
+        "settings": [
+            {
+                "pipe": pipe,
+                "method": method,
+                "setting": setting,
+                "evaluations": [result.evaluations for result, _ in own],
+                "seconds": [seconds for _, seconds in own],
+                "cost": [result.path.cost if result.grasp is not None else None for result, _ in own],
+                "solved": [result.outcome == Outcome.solved for result, _ in own],
+            }
+            for setting, own in by_setting
+        ]
     }
 
 
@@ -178,16 +187,17 @@ def all_runs(context: Context) -> list[dict[str, Any]]:
             {
                 "pipe": pipe,
                 "method": method,
-                "setting": setting,
+                "settings": settings,
                 "runs": runs,
                 "seed": context.seed,
                 "target": (1 + WITHIN) * known[pipe]["cost"],
             }
             for pipe in pipes
             for method in METHODS
-            for setting in settings
         ]
-        _KEPT["runs", *key] = context.sweep(runs_of, items, "searches")
+        _KEPT["runs", *key] = [
+            setting for found in context.sweep(runs_of, items, "searches") for setting in found["settings"]
+        ]
     kept: list[dict[str, Any]] = _KEPT["runs", *key]
     return kept
 

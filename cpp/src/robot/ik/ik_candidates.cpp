@@ -44,8 +44,9 @@ ClosedFormSolver::ClosedFormSolver(const JointGroup& group, int values) : group_
 
 /// Whole turns bring a value nearest to the middle of its limits.
 void ClosedFormSolver::turn_inside(Eigen::VectorXd& q) const {
+  const Eigen::VectorXd &lowest = group_.lower(), &highest = group_.upper();
   for (Eigen::Index i = 0; i < q.size(); ++i) {
-    const double lower = group_.lower()[i], upper = group_.upper()[i];
+    const double lower = lowest[i], upper = highest[i];
     const double from_middle = q[i] - middle_[i];
     q[i] = middle_[i] + (std::abs(from_middle) < kPi ? from_middle : wrap_angle(from_middle));
     // A value on its limit may have come out a rounding beyond it.

@@ -123,11 +123,13 @@ void solve_spherical(const Screws& s, const Rigid& G, bool reversed, Branches& b
   for (int i = 0; i < positions.count; ++i) {
     const auto& found = positions.value[i];
     const double a = found[0], b = found[1], c = found[2];
-    const auto back = [&](const Vector3d& x) { return turned(s.h[2], -c, turned(s.h[1], -b, turned(s.h[0], -a, x))); };
+    const Turn one(s.h[0], a), two(s.h[1], b), three(s.h[2], c);
+    const auto back = [&](const Vector3d& x) { return three.back(two.back(one.back(x))); };
     const Vector3d Rh = back(G.R * s.h[5]), Ry = back(G.R * y);
     for (const double fifth : noted(angles_to_plane(s.h[4], s.h[3], s.h[5], s.h[3].dot(Rh)), branches.free)) {
-      const double fourth = angle_onto(s.h[3], turned(s.h[4], fifth, s.h[5]), Rh, branches.free);
-      const double sixth = angle_onto(s.h[5], y, turned(s.h[4], -fifth, turned(s.h[3], -fourth, Ry)), branches.free);
+      const Turn five(s.h[4], fifth);
+      const double fourth = angle_onto(s.h[3], five(s.h[5]), Rh, branches.free);
+      const double sixth = angle_onto(s.h[5], y, five.back(turned(s.h[3], -fourth, Ry)), branches.free);
       add(branches, {a, b, c, fourth, fifth, sixth}, reversed);
     }
   }
@@ -139,13 +141,15 @@ void solve_parallel(const Screws& s, const Rigid& G, bool reversed, Branches& br
   const Vector3d Go = G * o, Gh = G.R * s.h[5];
   const Vector3d y = across(h);
   for (const double first : noted(angles_to_plane(s.h[0], h, Go - s.p[0], h.dot(o - s.p[0])), branches.free)) {
-    const Vector3d u = turned_point(s, 0, first, Go), uh = turned(s.h[0], first, Gh);
+    const Turn one(s.h[0], first);
+    const Vector3d u = s.p[0] + one(Go - s.p[0]), uh = one(Gh);
+    const Vector3d right = G.R.transpose() * one.back(h);
     for (const double fifth : noted(angles_to_plane(s.h[4], h, s.h[5], h.dot(uh)), branches.free)) {
       // R_6^T R_5^T h = G^T R_1 h
-      const Vector3d left = turned(s.h[4], -fifth, h), right = G.R.transpose() * turned(s.h[0], -first, h);
-      const double sixth = -angle_onto(s.h[5], left, right, branches.free);
+      const Turn five(s.h[4], fifth);
+      const double sixth = -angle_onto(s.h[5], five.back(h), right, branches.free);
       // What joints 2-4 turn together, and where they bring the point o.
-      const Vector3d Ry = turned(s.h[0], first, G.R * turned(s.h[5], -sixth, turned(s.h[4], -fifth, y)));
+      const Vector3d Ry = one(G.R * turned(s.h[5], -sixth, five.back(y)));
       const double sum = angle_onto(h, y, Ry, branches.free);
       const Vector3d p4 = u + turned(h, sum, s.p[3] - o);
       for (const double third :

@@ -23,9 +23,23 @@ struct Angles {
   const double* end() const { return value.data() + count; }
 };
 
+/// The turn about an axis by one angle, for several vectors.
+class Turn {
+ public:
+  Turn(const Eigen::Vector3d& axis, double angle) : axis_(axis), c_(std::cos(angle)), s_(std::sin(angle)) {}
+  Eigen::Vector3d operator()(const Eigen::Vector3d& x) const { return apply(s_, x); }
+  Eigen::Vector3d back(const Eigen::Vector3d& x) const { return apply(-s_, x); }
+
+ private:
+  Eigen::Vector3d apply(double s, const Eigen::Vector3d& x) const {
+    return c_ * x + s * axis_.cross(x) + (1 - c_) * axis_.dot(x) * axis_;
+  }
+  Eigen::Vector3d axis_;
+  double c_, s_;
+};
+
 inline Eigen::Vector3d turned(const Eigen::Vector3d& axis, double angle, const Eigen::Vector3d& x) {
-  const double c = std::cos(angle), s = std::sin(angle);
-  return c * x + s * axis.cross(x) + (1 - c) * axis.dot(x) * axis;
+  return Turn(axis, angle)(x);
 }
 
 /// a cos(angle) + b sin(angle) = c. What misses a solution by a little (geometry that is only nearly special, poses at

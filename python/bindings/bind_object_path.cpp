@@ -245,6 +245,10 @@ void bind_optimum(py::module_& m) {
        option_help(optimize_grasp_fields()))
           .c_str());
   m.def("population_search_names", &population_search_names, "The population searches among grasp_search_names().");
+  m.def(
+      "default_grasp_search",
+      [](const Given<JointGroup>& group) { return default_grasp_search(taken(group, "group")); }, "group"_a,
+      "branch_and_bound for arms that it takes, else bees.");
   m.def("grasp_search_names", &grasp_search_names, "Names that optimize_grasp's `algorithm` takes.");
 }
 

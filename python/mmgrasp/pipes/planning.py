@@ -15,6 +15,7 @@ from .._core import (
     ObjectPathResult,
     Outcome,
     SupportedFrame,
+    default_grasp_search,
     follow_object_path,
     optimize_grasp,
     time_parameterize,
@@ -92,7 +93,7 @@ class PipePlan:
         if self.grasp is None:
             return "proven: no grasp can do it" if self.outcome == Outcome.infeasible else "no proof that there is none"
         if self.optimum.lower_bound <= 0:
-            return "the best of the search, not proven (algorithm: branch_and_bound proves it)"
+            return "the best of the search, not proven"
         return f"no grasp is more than {100 * self.gap:.2g} % cheaper, which is proven"
 
     @property
@@ -128,7 +129,7 @@ def plan_pipe(problem: PipeProblem, progress: Progress = None) -> PipePlan:
     optimum = optimize_grasp(
         task,
         problem.pipe,
-        **{"max_evaluations": 2000, **problem.search_options},
+        **{"algorithm": default_grasp_search(problem.arm), "max_evaluations": 2000, **problem.search_options},
         **problem.all_path_options,
         progress=progress,
     )

@@ -24,6 +24,7 @@ struct MMGRASP_EXPORT GraspSearchOptions {
   /// A name of population_search_names(), or "branch_and_bound": bees first, then boxes of grasps are divided until
   /// none can be cheaper by more than max_gap. For arms of six joints whose axes 2 and 3 are parallel and 4, 5 and 6
   /// meet, or 2, 3 and 4 are parallel and 5 and 6 meet.
+  /// See default_grasp_search().
   std::string algorithm = "bees";
   GraspNeighbourhood neighbourhood = GraspNeighbourhood::connected_sections;
   PopulationOptions population;
@@ -34,6 +35,9 @@ struct MMGRASP_EXPORT GraspSearchOptions {
   PipeGraspOptions grasp;   ///< Axes of the hand, widest opening, margin kept from nodes; its sampling is not used.
   void check() const;
 };
+
+/// "branch_and_bound" for arms that it takes, else "bees": what `mmgrasp pipe` searches with unless told otherwise.
+MMGRASP_EXPORT std::string default_grasp_search(const JointGroup& group);
 
 /// Names that GraspSearchOptions::algorithm takes.
 MMGRASP_EXPORT std::vector<std::string> grasp_search_names();
@@ -58,9 +62,9 @@ struct MMGRASP_EXPORT GraspOptimum {
   std::vector<FeasibleGrasp> feasible;
   /// Which of them no other beats in one objective without losing in another (the Pareto front), ascending in O1.
   std::vector<int> front;
-  int evaluations = 0;
+  int evaluations = 0;          ///< Grasps tried, those in the middles of boxes among them.
   int boxes = 0;                ///< Bounded by branch_and_bound.
-  std::vector<double> history;  ///< Best cost after each evaluation; infinite while nothing was feasible.
+  std::vector<double> history;  ///< Best cost after each evaluation of the population; infinite: nothing feasible yet.
   /// Poses in order, each with how many of the grasps tried could not reach it and at how many all arm configurations
   /// collided.
   std::vector<int> unreachable, colliding;

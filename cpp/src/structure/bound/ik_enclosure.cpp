@@ -34,6 +34,20 @@ double distance_to_axis(const Screws& s, int i, const Vector3d& x) {
   return (x - s.p[i]).cross(s.h[i]).norm();
 }
 
+/// Which of the two kinds an arm is.
+struct Geometry {
+  Vector3d meeting;  ///< Of axes 5 and 6.
+  bool spherical = false;
+};
+
+std::optional<Geometry> geometry_of(const Screws& s) {
+  const auto wrist = s.size == 6 ? meeting_point(s, 4, 5) : std::nullopt;
+  if (!wrist || !are_parallel(s, 1, 2) || are_parallel(s, 0, 1)) return std::nullopt;
+  const bool spherical = !are_parallel(s, 3, 4) && distance_to_axis(s, 3, *wrist) < kSpecial;
+  if (!spherical && !are_parallel(s, 1, 3)) return std::nullopt;
+  return Geometry{*wrist, spherical};
+}
+
 Vector3d across(const Vector3d& h) {
   Eigen::Index smallest;
   h.cwiseAbs().minCoeff(&smallest);
@@ -42,13 +56,14 @@ Vector3d across(const Vector3d& h) {
 
 }  // namespace
 
+bool IkEnclosure::takes(const JointGroup& group) {
+  return geometry_of(screws_of(group)).has_value();
+}
+
 IkEnclosure::IkEnclosure(const JointGroup& group) : group_(group) {
   const Screws s = screws_of(group);
-  const auto wrist = s.size == 6 ? meeting_point(s, 4, 5) : std::nullopt;
-  const bool parallel12 = wrist && are_parallel(s, 1, 2);
-  const bool level = parallel12 && !are_parallel(s, 0, 1);
-  spherical_ = level && !are_parallel(s, 3, 4) && distance_to_axis(s, 3, *wrist) < kSpecial;
-  require(level && (spherical_ || are_parallel(s, 1, 3)), "group", group.name(),
+  const auto geometry = geometry_of(s);
+  require(geometry.has_value(), "group", group.name(),
           "must be an arm of six turning joints without a base, whose axes 2 and 3 are parallel and either 4, 5 and 6 "
           "meet in a point or 4 is parallel, too, and 5 and 6 meet, all within 1e-6 m and rad: only for these bounds "
           "are proven (a population search takes any arm)");
@@ -56,7 +71,8 @@ IkEnclosure::IkEnclosure(const JointGroup& group) : group_(group) {
     h_[i] = s.h[i].normalized();
     p_[i] = s.p[i];
   }
-  meeting_ = *wrist;
+  meeting_ = geometry->meeting;
+  spherical_ = geometry->spherical;
   // A turn about an axis that is off by dh in direction and dp in place differs by at most 5 dh in rotation and moves
   // points by 5 dh times their distance and 2 dp.
   off_rotation_ = off_position_ = kPolished;

@@ -6,6 +6,7 @@
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "structure/bound/ik_enclosure.hpp"
 #include "structure/object_path/branch_and_bound.hpp"
 #include "structure/object_path/grasp_variables.hpp"
 
@@ -44,6 +45,10 @@ const char* to_string(GraspNeighbourhood neighbourhood) {
     default:
       return "connected_sections";
   }
+}
+
+std::string default_grasp_search(const JointGroup& group) {
+  return detail::IkEnclosure::takes(group) ? kBranchAndBound : "bees";
 }
 
 std::vector<std::string> grasp_search_names() {
@@ -92,29 +97,31 @@ GraspOptimum optimize_grasp(const ObjectPathProblem& problem, const Pipe& pipe, 
   search.neighbour = [&](const Eigen::VectorXd& x, double size, Rng& rng) {
     return grasps.neighbour(x, size, options.neighbourhood, rng);
   };
-  search.evaluate = [&](const Eigen::VectorXd& x) {
-    Grasp grasp = grasps.grasp(x);
-    const ObjectPathResult found = evaluator.evaluate(grasp);
+  const auto count = [&](Grasp grasp, const ObjectPathResult& found) {
+    ++out.evaluations;
     for (std::size_t i = 0; i < found.violations.size(); ++i) {
       out.unreachable[i] += found.violations[i] == 2;
       out.colliding[i] += found.violations[i] == 1;
     }
     for (const int pose : found.overloaded) ++out.overloaded[pose];
-    if (found.outcome == Outcome::solved) {
-      grasp.cost = found.cost;
-      out.feasible.push_back({grasp, found.joint_motion, found.deflection, found.force_manipulability});
-    }
+    if (found.outcome != Outcome::solved) return;
+    grasp.cost = found.cost;
+    out.feasible.push_back({grasp, found.joint_motion, found.deflection, found.force_manipulability});
+  };
+  search.evaluate = [&](const Eigen::VectorXd& x) {
+    const Grasp grasp = grasps.grasp(x);
+    const ObjectPathResult found = evaluator.evaluate(grasp);
+    count(grasp, found);
     return ConstrainedValue{static_cast<double>(found.violation), found.cost};
   };
   const bool prove = options.algorithm == kBranchAndBound;
   const PopulationResult found =
       make_population_search(prove ? "bees" : options.algorithm)->solve(search, options.population, monitor);
-  out.evaluations = found.evaluations;
   out.history = found.history;
-  std::stable_sort(out.feasible.begin(), out.feasible.end(),
-                   [](const FeasibleGrasp& a, const FeasibleGrasp& b) { return a.grasp.cost < b.grasp.cost; });
   // What fails the finer check is no candidate for anyone; the cheapest that passes is the answer.
   const auto check_first = [&] {
+    std::stable_sort(out.feasible.begin(), out.feasible.end(),
+                     [](const FeasibleGrasp& a, const FeasibleGrasp& b) { return a.grasp.cost < b.grasp.cost; });
     while (!out.feasible.empty()) {
       out.path = follow_object_path(problem, out.feasible.front().grasp, path_options);
       if (out.path.outcome == Outcome::solved) return;
@@ -125,12 +132,10 @@ GraspOptimum optimize_grasp(const ObjectPathProblem& problem, const Pipe& pipe, 
   bool stopped = found.outcome == Outcome::stopped;
   if (prove && !stopped) {
     const double cost = out.feasible.empty() ? detail::kInfinity : out.path.cost;
-    const detail::BoxSearch boxes = detail::divide_boxes(problem, pipe, path_options, options, cost, monitor);
-    out.feasible.insert(out.feasible.begin(), boxes.found.rbegin(), boxes.found.rend());
-    if (!boxes.found.empty()) check_first();
+    const detail::BoxSearch boxes = detail::divide_boxes(problem, pipe, path_options, options, cost, count, monitor);
+    check_first();
     out.lower_bound = boxes.lower_bound;
     out.boxes = boxes.boxes;
-    out.evaluations += boxes.evaluations;
     stopped = boxes.stopped;
   }
   out.front = pareto_front(out.feasible);

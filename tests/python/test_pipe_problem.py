@@ -21,10 +21,10 @@ import mmgrasp as mg
 from mmgrasp import _core
 from mmgrasp._files import ASSETS
 from mmgrasp._files import shipped as shipped_file
+from mmgrasp._turns import rotation_about, rotation_vector
 from mmgrasp.cli import main
 from mmgrasp.grasping import BeamSupport, SupportedFrame, optimize_grasp
 from mmgrasp.pipes import PipePlan, arc_poses, line_poses, load_pipe_problem, plan_pipe, planning
-from mmgrasp.pipes.path_section import rotation_about, rotation_vector
 from mmgrasp.pipes.planning import _dense
 from mmgrasp.viz.pipe_report import pipe_report_html
 
@@ -239,6 +239,16 @@ def test_the_motion_carries_the_pipe_through_every_pose(plan: PipePlan) -> None:
     checker = mg.CollisionChecker(problem.robot, world, group=arm)
     for a, b in zip(plan.trajectory.positions[:-1], plan.trajectory.positions[1:], strict=True):
         assert checker.edge_is_free(a, b)
+
+
+def test_gravity_is_the_librarys_unless_the_file_says(tmp_path: Path) -> None:
+    content = shipped()
+    T = mg.pose([1, 2, 3], rpy=[0.3, -0.5, 0.7])
+    assert np.allclose(
+        load_pipe_problem(written(tmp_path, content)).gravity_in_pipe(T), T[:3, :3].T @ [0, 0, -9.81], atol=1e-12
+    )
+    content["options"]["gravity"] = 1.62
+    assert np.linalg.norm(load_pipe_problem(written(tmp_path, content)).gravity_in_pipe(T)) == pytest.approx(1.62)
 
 
 def test_the_sags_are_the_frames(plan: PipePlan) -> None:

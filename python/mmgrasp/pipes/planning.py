@@ -21,7 +21,7 @@ from .._core import (
     time_parameterize,
 )
 from .._progress import Progress
-from .path_section import between, rotation_vector
+from .._turns import between, rotation_vector
 from .problem import PipeProblem
 
 POSITION_STEP, ROTATION_STEP = 0.01, 0.05  # of the pipe between two poses that the arm is computed for [m], [rad]
@@ -155,7 +155,7 @@ def plan_pipe(problem: PipeProblem, progress: Progress = None) -> PipePlan:
     plan.waypoint_times = _passing_times(plan.trajectory, plan.path.path)
     held = SupportedFrame(problem.frame, [plan.grasp])
     for T, time in zip(problem.T_world_pipe, plan.waypoint_times, strict=True):
-        state = held.state(gravity_in_pipe(problem, T))
+        state = held.state(problem.gravity_in_pipe(T))
         plan.sags.append(
             WaypointSag(
                 float(time),
@@ -167,13 +167,6 @@ def plan_pipe(problem: PipeProblem, progress: Progress = None) -> PipePlan:
             )
         )
     return plan
-
-
-def gravity_in_pipe(problem: PipeProblem, T_world_pipe: np.ndarray) -> np.ndarray:
-    """Gravity in the pipe's frame (3,) [m/s2]."""
-    g = float(problem.path_options.get("gravity", 9.81))
-    down: np.ndarray = T_world_pipe[:3, :3].T @ np.array([0.0, 0.0, -g])
-    return down
 
 
 def timed_motion(

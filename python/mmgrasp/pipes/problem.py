@@ -63,6 +63,12 @@ class PipeProblem:
         """Keywords of follow_object_path."""
         return {**self.path_options, **self.preferences.options, "max_sag": self.limits.sag}
 
+    def gravity_in_pipe(self, T_world_pipe: np.ndarray) -> np.ndarray:
+        """Gravity in the pipe's frame (3,) [m/s2]."""
+        usual = _core._object_path_option_table()["gravity"][0]
+        down: np.ndarray = -float(self.path_options.get("gravity", usual)) * T_world_pipe[2, :3]
+        return down
+
     def object_path_problem(self) -> ObjectPathProblem:
         """The same for the library: only the fingers may touch the pipe."""
         return ObjectPathProblem(

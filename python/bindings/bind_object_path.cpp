@@ -74,6 +74,8 @@ struct OptimizeGraspOptions {
 const std::vector<OptionField<GraspSearchOptions>>& grasp_search_fields() {
   using O = GraspSearchOptions;
   static const std::vector<OptionField<O>> fields{
+      option<O>("front_searches", &O::front_searches,
+                "further searches, each for another mix of the objectives: the Pareto front is searched"),
       option<O>("max_gap", &O::max_gap, "branch_and_bound: ends once no grasp can be cheaper by this share"),
       option<O>("max_boxes", &O::max_boxes, "branch_and_bound: budget in boxes of grasps"),
       option<O>("time_limit", &O::time_limit, "branch_and_bound: wall-clock cap [s]"),

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -167,6 +168,72 @@ TEST(OptimizeGrasp, FrontHoldsWhatNothingBeats) {
     }
     EXPECT_EQ(std::count(best.front.begin(), best.front.end(), i), beaten ? 0 : 1);
   }
+}
+
+using Costs = std::array<double, 3>;
+
+/// How far the worst covered place of a grid's front is from the nearest one found, as a share of what the grid's front
+/// spans: found costs may exceed it by that much in no objective.
+double farthest(const std::vector<Costs>& front, const std::vector<Costs>& found) {
+  Costs least = front[0], most = front[0];
+  for (const Costs& each : front) {
+    for (int k = 0; k < 3; ++k) {
+      least[k] = std::min(least[k], each[k]);
+      most[k] = std::max(most[k], each[k]);
+    }
+  }
+  double worst = 0;
+  for (const Costs& wanted : front) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Costs& each : found) {
+      double over = 0;
+      for (int k = 0; k < 3; ++k) over = std::max(over, (each[k] - wanted[k]) / (most[k] - least[k]));
+      nearest = std::min(nearest, over);
+    }
+    worst = std::max(worst, nearest);
+  }
+  return worst;
+}
+
+TEST(OptimizeGrasp, FrontSearchesCoverTheFrontOfAGrid) {
+  const ObjectPathProblem problem = arc_past_post(5);
+  ObjectPathEvaluator evaluator(problem);
+  std::vector<Costs> all, front;
+  for (int section = 0; section < 6; ++section) {
+    for (double at = 0.02; at <= figure_3_4().length(section) - 0.02 + 1e-9; at += 0.01) {
+      for (int degree = -180; degree < 180; degree += 5) {
+        const auto found =
+            evaluator.evaluate(place_pipe_grasp(figure_3_4(), section, at, degree * M_PI / 180, false, puma_tool()));
+        if (found.outcome == Outcome::solved)
+          all.push_back({found.joint_motion, found.deflection, found.force_manipulability});
+      }
+    }
+  }
+  for (const Costs& a : all) {
+    const bool beaten = std::any_of(all.begin(), all.end(), [&](const Costs& b) {
+      return b != a && b[0] <= a[0] && b[1] <= a[1] && b[2] <= a[2];
+    });
+    if (!beaten) front.push_back(a);
+  }
+  ASSERT_GT(front.size(), 20u);
+  const auto searched = [&](int front_searches) {
+    GraspSearchOptions options;
+    options.grasp = puma_tool();
+    options.population.max_evaluations = 1000;
+    options.front_searches = front_searches;
+    const GraspOptimum found = optimize_grasp(problem, figure_3_4(), {}, options);
+    EXPECT_EQ(found.evaluations, 1000 * (1 + front_searches));
+    EXPECT_EQ(found.history.size(), 1000u);
+    std::vector<Costs> costs;
+    for (const int i : found.front) {
+      const FeasibleGrasp& each = found.feasible[i];
+      costs.push_back({each.joint_motion, each.deflection, each.force_manipulability});
+    }
+    return farthest(front, costs);
+  };
+  const double passed = searched(0), looked_for = searched(12);
+  EXPECT_LT(looked_for, 0.05);
+  EXPECT_LT(looked_for, 0.5 * passed);
 }
 
 TEST(OptimizeGrasp, OutOfReachSaysWhere) {

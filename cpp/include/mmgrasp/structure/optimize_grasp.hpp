@@ -28,6 +28,9 @@ struct MMGRASP_EXPORT GraspSearchOptions {
   std::string algorithm = "bees";
   GraspNeighbourhood neighbourhood = GraspNeighbourhood::connected_sections;
   PopulationOptions population;
+  /// Further searches with as many evaluations, each for another mix of the three objectives, so that the Pareto front is
+  /// searched and not only passed; >= 0.
+  int front_searches = 0;
   double max_gap = 1e-3;    ///< branch_and_bound: as a share of the cost; in (0, 1).
   int max_boxes = 1000000;  ///< branch_and_bound: budget in boxes bounded; > 0.
   double time_limit = 600;  ///< branch_and_bound: wall-clock cap [s]; > 0.
@@ -60,7 +63,8 @@ struct MMGRASP_EXPORT GraspOptimum {
   /// Every grasp that the search found feasible, the cheapest first: candidates for other planners, which find their
   /// cost in them. The first has passed the finer check, too.
   std::vector<FeasibleGrasp> feasible;
-  /// Which of them no other beats in one objective without losing in another (the Pareto front), ascending in O1.
+  /// Which of them no other beats in one objective without losing in another (the Pareto front), each grasp with its
+  /// cheapest motion; ascending in O1. Searched with GraspSearchOptions::front_searches, else what the search passed.
   std::vector<int> front;
   int evaluations = 0;          ///< Grasps tried, those in the middles of boxes among them.
   int boxes = 0;                ///< Bounded by branch_and_bound.

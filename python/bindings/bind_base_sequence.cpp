@@ -106,6 +106,9 @@ void bind_stops(py::module_& m) {
       .def_readonly("radius", &Stop::radius, "Of the disc in which every target part stays graspable [m].")
       .def_readonly("trays", &Stop::trays, "Indices of the trays picked here; each tray has one stop.")
       .def_readonly("intersection", &Stop::intersection, "Index into the robust intersections.")
+      .def_readonly("arrivals", &Stop::arrivals, "Arrivals drawn by the problem's arrival_covariance; 0: none.")
+      .def_readonly("arrivals_served", &Stop::arrivals_served,
+                    "Those of them from which all parts of its trays can be grasped.")
       .def("__repr__", [](const Stop& s) {
         return "Stop(" + text(s.pose) + ", trays " + std::string(py::repr(py::cast(s.trays))) + ")";
       });

@@ -37,6 +37,12 @@ const std::vector<OptionField<Options>>& supply_fields() {
   return fields;
 }
 
+Eigen::Matrix3d covariance_argument(const ArrayLike& value) {
+  const Eigen::MatrixXd rows = matrix_argument(value, "arrival_covariance", 3);
+  require(rows.rows() == 3, "arrival_covariance", std::to_string(rows.rows()) + " rows", "must have shape (3, 3)");
+  return rows;
+}
+
 const std::vector<OptionField<PickOptions>>& pick_fields() {
   static const std::vector<OptionField<PickOptions>> fields{
       option<PickOptions>("approach_distance", &PickOptions::approach_distance,
@@ -50,6 +56,10 @@ const std::vector<OptionField<PickOptions>>& pick_fields() {
 
 void bind_problem(py::module_& m) {
   m.def("_supply_option_table", [] { return option_table(supply_fields()); });
+  m.def(
+      "_check_arrival_covariance",
+      [](const ArrayLike& covariance) { check_arrival_covariance(covariance_argument(covariance)); },
+      py::arg("covariance"), "Raises InvalidInput when this is no covariance (3, 3) of x, y and theta.");
   m.def(
       "_check_options",
       [](const std::string& section, const py::kwargs& options) {
@@ -127,7 +137,8 @@ void bind_problem(py::module_& m) {
                                 "    plan = mg.base.plan_part_supply(problem, database)")
       .def(py::init([](const Robot& robot, const JointGroup& arm, const Hand& gripper, const World& scene,
                        std::vector<Tray> trays, const ArrayLike& home, const ArrayLike& start, const ArrayLike& goal,
-                       const PlaceRegion& place_region, const py::kwargs& options) {
+                       const PlaceRegion& place_region, const OptionalArray& arrival_covariance,
+                       const py::kwargs& options) {
              PartSupplyProblem problem{robot,
                                        arm,
                                        gripper,
@@ -138,13 +149,18 @@ void bind_problem(py::module_& m) {
                                        vector3_argument(goal, "goal"),
                                        place_region,
                                        read_options(supply_fields(), options, "PartSupplyProblem")};
+             if (!arrival_covariance.is_none())
+               problem.arrival_covariance = covariance_argument(py::reinterpret_borrow<ArrayLike>(arrival_covariance));
              problem.check();
              return problem;
            }),
            py::arg("robot"), py::arg("arm"), py::arg("gripper"), py::arg("scene"), py::arg("trays"), py::arg("home"),
-           py::arg("start"), py::arg("goal"), py::arg("place_region"),
+           py::arg("start"), py::arg("goal"), py::arg("place_region"), py::kw_only(),
+           py::arg("arrival_covariance") = py::none(),
            ("`scene` is without the parts; `home` (n,) is the arm's configuration while driving; `start` and `goal` "
-            "(3,) are base\nposes x, y, theta [m, m, rad]. Raises InvalidInput naming the field that breaks its rule." +
+            "(3,) are base\nposes x, y, theta [m, m, rad]. `arrival_covariance` (3, 3) of x, y [m^2] and theta [rad^2] "
+            "in the world's axes says how far\nfrom a stop the base comes to stand; stops then are where most arrivals "
+            "serve all their parts. Raises InvalidInput naming\nthe field that breaks its rule." +
             option_help(supply_fields()))
                .c_str())
       .def_readonly("robot", &PartSupplyProblem::robot, "The robot.")
@@ -156,6 +172,8 @@ void bind_problem(py::module_& m) {
       .def_readonly("start", &PartSupplyProblem::start, "Base pose at the beginning (3,): x, y, theta [m, m, rad].")
       .def_readonly("goal", &PartSupplyProblem::goal, "Base pose at the end (3,): x, y, theta [m, m, rad].")
       .def_readonly("place_region", &PartSupplyProblem::place_region, "Where picked parts go.")
+      .def_readonly("arrival_covariance", &PartSupplyProblem::arrival_covariance,
+                    "Of x, y [m^2] and theta [rad^2] about a stop (3, 3); zeros: not asked for.")
       .def_property_readonly(
           "options",
           [](const PartSupplyProblem& p) -> NamedOptions {

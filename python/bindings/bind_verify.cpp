@@ -83,12 +83,15 @@ void bind_checked_parts(py::module_& m) {
            "`pick`: index into the plan's picks; the fingers begin to close at `close_at` [s] and hold the part from "
            "`closed_at`\n[s] on; rows of `motion` hold x, y, theta, then the arm's joints.");
   py::class_<CheckedStop>(m, "CheckedStop", "A stop of the base.")
-      .def(py::init([](const ArrayLike& pose, double radius, std::vector<std::string> trays) {
-             return CheckedStop{vector3_argument(pose, "stop pose"), radius, std::move(trays)};
+      .def(py::init([](const ArrayLike& pose, double radius, std::vector<std::string> trays, int arrivals,
+                       int arrivals_served) {
+             return CheckedStop{vector3_argument(pose, "stop pose"), radius, std::move(trays), arrivals,
+                                arrivals_served};
            }),
-           py::arg("pose"), py::arg("radius"), py::arg("trays"),
+           py::arg("pose"), py::arg("radius"), py::arg("trays"), py::kw_only(), py::arg("arrivals") = 0,
+           py::arg("arrivals_served") = 0,
            "`pose` (3,): x, y, theta [m, m, rad]; `radius` of the disc in which every target part stays graspable [m]; "
-           "names of\nthe trays served.");
+           "names of\nthe trays served; how many arrivals were drawn, and how many serve all parts.");
   py::class_<CheckedRegion>(m, "CheckedRegion", "Base poses that a plan says serve a tray.")
       .def(py::init([](std::string tray, const ArrayLike& cells) {
              return CheckedRegion{std::move(tray), flags_argument(cells, "cells")};
@@ -165,6 +168,8 @@ void bind_plan_to_check(py::module_& m) {
       .def_readwrite("goal", &PlanToCheck::goal, "Base pose at the end (3,): x, y, theta [m, m, rad].")
       .def_readwrite("positioning_uncertainty", &PlanToCheck::positioning_uncertainty,
                      "Radius of the disc in which the base may come to stand [m].")
+      .def_readwrite("arrival_covariance", &PlanToCheck::arrival_covariance,
+                     "Of x, y [m^2] and theta [rad^2] about a stop (3, 3); zeros: arrivals are not judged.")
       .def_property(
           "T_base_bin", [](const PlanToCheck& p) { return to_array(p.T_base_bin); },
           [](PlanToCheck& p, const ArrayLike& T) { p.T_base_bin = pose_argument(T, "T_base_bin"); },

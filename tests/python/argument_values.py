@@ -163,6 +163,8 @@ VALUES: dict[str, Any] = {
     "PlaceRegion.size": np.array([0.1, 0.2]),
     "PartSupplyProblem.start": X_Y_THETA,
     "PartSupplyProblem.goal": X_Y_THETA,
+    "arrival_covariance": np.diag([0.01, 0.01, 0.001]),
+    "_check_arrival_covariance.covariance": np.diag([0.01, 0.01, 0.001]),
     "plan_stops_exact.start": np.array([0.5, 0.25]),
     "plan_stops_exact.goal": np.array([0.25, 0.5]),
     "plan_base_route.start": X_Y_THETA,

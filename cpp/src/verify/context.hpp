@@ -55,6 +55,8 @@ void check_route(const Context& context, Faults& faults, std::size_t& configurat
 /// Every target part graspable from everywhere in the uncertainty discs (robustness.cpp).
 void check_robustness(const Context& context, Faults& faults, std::vector<StopRate>& rates,
                       std::size_t& configurations);
+/// Arrivals drawn by the plan's covariance serve all parts as often as it says (robustness.cpp).
+void check_arrivals(const Context& context, Faults& faults, std::size_t& configurations);
 /// Base poses drawn in the regions and beside them (region_samples.cpp).
 void check_regions(const Context& context, Faults& faults, std::size_t& configurations);
 /// Stops inside their regions, and no smaller cover (minimality.cpp).

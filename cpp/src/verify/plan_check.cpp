@@ -138,6 +138,7 @@ PlanCheckResult check_plan(const PlanToCheck& plan, const PlanCheckOptions& opti
   check_arm_motions(context, result.faults, result.configurations_checked);
   check_drive_by(context, result.faults, result.configurations_checked);
   check_robustness(context, result.faults, result.rates, result.configurations_checked);
+  check_arrivals(context, result.faults, result.configurations_checked);
   check_regions(context, result.faults, result.configurations_checked);
   // An answer that was not finished must not look like a good one.
   if (monitor.stopped()) result.faults.push_back({"stopped", "check", "was ended before everything was checked"});

@@ -1,4 +1,5 @@
 // Checks the form of a plan before anything is computed from it.
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -143,6 +144,11 @@ void Structure::scalars() {
   need(finite(Eigen::VectorXd(plan.goal)), "goal", "must be finite");
   need(finite(plan.positioning_uncertainty) && plan.positioning_uncertainty >= 0, "positioning_uncertainty",
        text(plan.positioning_uncertainty) + ": must be finite and not negative");
+  const Eigen::Matrix3d& covariance = plan.arrival_covariance;
+  const double size = covariance.cwiseAbs().maxCoeff();
+  need(covariance.allFinite() && (covariance - covariance.transpose()).cwiseAbs().maxCoeff() <= 1e-9 * size &&
+           (size == 0 || Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvalues()[0] >= -1e-9 * size),
+       "arrival_covariance", "must be finite, symmetric and without a negative eigenvalue");
   need(is_pose(plan.T_base_bin), "place_region", "the bin's pose is not a finite rigid transform");
   need(finite(Eigen::VectorXd(plan.bin_size)) && plan.bin_size.minCoeff() > 0, "place_region",
        "the bin's size must be positive");
@@ -152,6 +158,10 @@ void Structure::scalars() {
   for (std::size_t i = 0; i < plan.stops.size(); ++i) {
     need(finite(Eigen::VectorXd(plan.stops[i].pose)) && finite(plan.stops[i].radius), "stop " + std::to_string(i),
          "must be finite");
+    const int drawn = plan.stops[i].arrivals, served = plan.stops[i].arrivals_served;
+    need((drawn > 0) == (size > 0) && served >= 0 && served <= drawn, "stop " + std::to_string(i),
+         size > 0 ? "must say of how many arrivals, more than 0, how many serve all parts"
+                  : "has arrivals without an arrival_covariance");
   }
 }
 

@@ -2856,10 +2856,12 @@ class PartSupplyProblem:
         database = mg.ReachDatabase.build(problem.arm)
         plan = mg.base.plan_part_supply(problem, database)
     """
-    def __init__(self, robot: Robot, arm: JointGroup, gripper: Hand, scene: World, trays: collections.abc.Sequence[Tray], home: numpy.typing.ArrayLike, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike, place_region: PlaceRegion, *, grid_resolution: float = 0.05, grid_max_distance: float = 0.0, ik_seeds: int = 8, positioning_uncertainty: float = 0.1, approach_distance: float = 0.08, lift_height: float = 0.12, motion_time_limit: float = 5.0, route_resolution: float = 0.1, robustness_samples: int = 2000, seed: int = 1, threads: int = 0) -> None:
+    def __init__(self, robot: Robot, arm: JointGroup, gripper: Hand, scene: World, trays: collections.abc.Sequence[Tray], home: numpy.typing.ArrayLike, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike, place_region: PlaceRegion, *, arrival_covariance: numpy.typing.ArrayLike | None = None, grid_resolution: float = 0.05, grid_max_distance: float = 0.0, ik_seeds: int = 8, positioning_uncertainty: float = 0.1, approach_distance: float = 0.08, lift_height: float = 0.12, motion_time_limit: float = 5.0, route_resolution: float = 0.1, robustness_samples: int = 2000, seed: int = 1, threads: int = 0) -> None:
         """
         `scene` is without the parts; `home` (n,) is the arm's configuration while driving; `start` and `goal` (3,) are base
-        poses x, y, theta [m, m, rad]. Raises InvalidInput naming the field that breaks its rule.
+        poses x, y, theta [m, m, rad]. `arrival_covariance` (3, 3) of x, y [m^2] and theta [rad^2] in the world's axes says how far
+        from a stop the base comes to stand; stops then are where most arrivals serve all their parts. Raises InvalidInput naming
+        the field that breaks its rule.
         
         Keyword options:
             grid_resolution: float = 0.05  # cell edge of the base grid [m]
@@ -2878,6 +2880,11 @@ class PartSupplyProblem:
     def arm(self) -> JointGroup:
         """
         The arm, without base joints.
+        """
+    @property
+    def arrival_covariance(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Of x, y [m^2] and theta [rad^2] about a stop (3, 3); zeros: not asked for.
         """
     @property
     def goal(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -3166,6 +3173,16 @@ class Stop:
     """
     def __repr__(self) -> str:
         ...
+    @property
+    def arrivals(self) -> int:
+        """
+        Arrivals drawn by the problem's arrival_covariance; 0: none.
+        """
+    @property
+    def arrivals_served(self) -> int:
+        """
+        Those of them from which all parts of its trays can be grasped.
+        """
     @property
     def intersection(self) -> int:
         """
@@ -5987,6 +6004,10 @@ def _capability_option_table() -> dict[str, typing.Any]:
     ...
 def _cartesian_option_table() -> dict[str, typing.Any]:
     ...
+def _check_arrival_covariance(covariance: numpy.typing.ArrayLike) -> None:
+    """
+    Raises InvalidInput when this is no covariance (3, 3) of x, y and theta.
+    """
 def _check_options(section: str, **kwargs: typing.Any) -> None:
     """
     Raises InvalidInput when an option of a scenario's section is out of range.

@@ -70,10 +70,10 @@ class CheckedStop:
     """
     A stop of the base.
     """
-    def __init__(self, pose: numpy.typing.ArrayLike, radius: float, trays: collections.abc.Sequence[str]) -> None:
+    def __init__(self, pose: numpy.typing.ArrayLike, radius: float, trays: collections.abc.Sequence[str], *, arrivals: int = 0, arrivals_served: int = 0) -> None:
         """
         `pose` (3,): x, y, theta [m, m, rad]; `radius` of the disc in which every target part stays graspable [m]; names of
-        the trays served.
+        the trays served; how many arrivals were drawn, and how many serve all parts.
         """
 class CheckedRegion:
     """
@@ -175,6 +175,14 @@ class PlanToCheck:
         """
     @arm_joints.setter
     def arm_joints(self, arg0: collections.abc.Sequence[str]) -> None:
+        ...
+    @property
+    def arrival_covariance(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Of x, y [m^2] and theta [rad^2] about a stop (3, 3); zeros: arrivals are not judged.
+        """
+    @arrival_covariance.setter
+    def arrival_covariance(self, arg0: numpy.typing.ArrayLike) -> None:
         ...
     @property
     def bin_size(self) -> numpy.typing.NDArray[numpy.float64]:

@@ -25,7 +25,9 @@ def summary(plan: ScenarioPlan) -> Table:
         title=f"{escape(plan.scenario.name)}: {count(plan.stops, 'stop')} (proven least {plan.plan.lower_bound}), "
         f"{count(plan.picks, 'pick')}"
     )
-    for title in ("stop", "x [m]", "y [m]", "heading [deg]", "free disc [m]", "trays", "picks", "arm time [s]"):
+    known = any(stop.arrivals for stop in plan.stops)
+    sure = ("all parts from",) if known else ()
+    for title in ("stop", "x [m]", "y [m]", "heading [deg]", "free disc [m]", *sure, "trays", "picks", "arm time [s]"):
         table.add_column(title, justify="left" if title == "trays" else "right")
     names = [plan.scenario.trays[t].tray.name for t in plan.plan.region_trays]
     for i, stop in enumerate(plan.stops):
@@ -37,6 +39,7 @@ def summary(plan: ScenarioPlan) -> Table:
             f"{y:.2f}",
             f"{theta * 57.29578:.0f}",
             f"{stop.radius:.3f}",
+            *([f"{100 * stop.arrivals_served / stop.arrivals:.1f} % of arrivals"] if known else []),
             escape(", ".join(names[t] for t in stop.trays)),
             str(len(picks)),
             f"{sum(p.duration for p in picks):.1f}",

@@ -92,6 +92,9 @@ def _read_body(node: Node) -> checks.CheckedBody:
 def _read_scene(plan: checks.PlanToCheck, scenario: Node) -> None:
     plan.start, plan.goal = (np.array(scenario[key].numbers(3)) for key in ("start", "goal"))
     plan.positioning_uncertainty = scenario["positioning_uncertainty"].number(least=0)
+    if "arrival_covariance" in scenario:
+        rows = scenario["arrival_covariance"].elements()
+        plan.arrival_covariance = np.array([row.numbers(3) for row in rows])
     place = scenario["place_region"]
     plan.T_base_bin = place["pose"].pose()
     plan.bin_size = np.array(place["size"].numbers(2, above=0))
@@ -139,10 +142,7 @@ def _read_answer(plan: checks.PlanToCheck, root: Node) -> None:
         checks.CheckedRegion(region["tray"].string(), _cells(region["cells"], len(headings), ny, nx))
         for region in root["regions"].elements()
     ]
-    plan.stops = [
-        checks.CheckedStop(s["pose"].numbers(3), s["radius"].number(), [t.string() for t in s["trays"].elements()])
-        for s in root["stops"].elements()
-    ]
+    plan.stops = [_read_stop(node) for node in root["stops"].elements()]
     plan.route = [list(leg["poses"].array(3)) for leg in root["route"].elements()]
     plan.picks = [_read_pick(node, len(plan.arm_joints)) for node in root["picks"].elements()]
     if "drive_by" in root.raw:
@@ -166,6 +166,15 @@ def _read_answer(plan: checks.PlanToCheck, root: Node) -> None:
         for node in root[key].elements()
     ]
     plan.robustness_rate = root["robustness_rate"].number()
+
+
+def _read_stop(node: Node) -> checks.CheckedStop:
+    trays = [tray.string() for tray in node["trays"].elements()]
+    arrivals = {}
+    if "arrivals" in node:
+        seen = node["arrivals"]
+        arrivals = {"arrivals": seen["drawn"].integer(least=1), "arrivals_served": seen["served"].integer(least=0)}
+    return checks.CheckedStop(node["pose"].numbers(3), node["radius"].number(), trays, **arrivals)
 
 
 def _read_intersection(node: Node, headings: list[float]) -> checks.CheckedIntersection:

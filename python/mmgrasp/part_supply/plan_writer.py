@@ -36,6 +36,7 @@ def plan_to_dict(scenario: Scenario, plan: PartSupplyPlan, timings: list[tuple[s
                 "radius": s.radius,
                 "trays": [names[t] for t in s.trays],
                 "intersection": s.intersection,
+                **({"arrivals": {"drawn": s.arrivals, "served": s.arrivals_served}} if s.arrivals else {}),
             }
             for s in plan.stops
         ],
@@ -98,6 +99,7 @@ def scenario_to_dict(scenario: Scenario) -> dict[str, Any]:
         "start": scenario.start.tolist(),
         "goal": scenario.goal.tolist(),
         "positioning_uncertainty": scenario.positioning_uncertainty,
+        **({"arrival_covariance": known.tolist()} if (known := scenario.arrival_covariance) is not None else {}),
         "place_region": {
             "pose": pose_to_dict(place.T_base_bin),
             "size": place.size.tolist(),

@@ -23,7 +23,9 @@ from .shapes import read_shapes
 from .tray_section import PartType, TraySetup, read_part_types, read_tray
 
 TOP_KEYS = "format version name robot start goal positioning_uncertainty trays"
-TOP_OPTIONAL = "part_types gripper place_region floor obstacles allowed_collisions padding options reach"
+TOP_OPTIONAL = (
+    "arrival_covariance part_types gripper place_region floor obstacles allowed_collisions padding options reach"
+)
 FLOOR = "floor"
 SHAPE_KEYS = "box cylinder sphere mesh shapes scale"
 
@@ -54,6 +56,8 @@ class Scenario:
     floor: float | None = 0.0
     """Height of level ground [m]; None: there is none."""
     rules: ContactRules = field(default_factory=ContactRules)
+    arrival_covariance: np.ndarray | None = None
+    """Of x, y [m^2] and theta [rad^2] about a stop (3, 3); None: discs are all that counts."""
 
     @property
     def world(self) -> World:
@@ -95,6 +99,7 @@ class Scenario:
             self.start,
             self.goal,
             setup.place_region,
+            arrival_covariance=self.arrival_covariance,
             positioning_uncertainty=self.positioning_uncertainty,
             **self.options,
         )
@@ -134,6 +139,7 @@ def load_scenario(
     _check_header(root)
     start, goal = np.array(root["start"].numbers(3)), np.array(root["goal"].numbers(3))
     uncertainty = root["positioning_uncertainty"].number(least=0)
+    covariance = _read_covariance(root["arrival_covariance"]) if "arrival_covariance" in root else None
     options = _read_options(root, "options", _core._supply_option_table(), {"positioning_uncertainty"})
     reach = _read_options(root, "reach", _core._reach_option_table(), set())
     obstacles = _read_obstacles(root)
@@ -170,6 +176,7 @@ def load_scenario(
         reach,
         floor,
         rules,
+        covariance,
     )
     for key in ("start", "goal"):
         _check_stands_free(root[key], scenario)
@@ -199,6 +206,18 @@ def _read_options(root: Node, section: str, table: dict[str, tuple[Any, str]], e
         except InvalidInput as error:
             root[section][key].fail(str(error))
     return options
+
+
+def _read_covariance(node: Node) -> np.ndarray:
+    """How far from a stop the base comes to stand: (3, 3), x, y [m^2] and theta [rad^2]."""
+    covariance = np.array([row.numbers(3) for row in node.elements()])
+    try:
+        _core._check_arrival_covariance(covariance)
+    except InvalidInput as error:
+        node.fail(str(error))
+    if not covariance.any():
+        node.fail("is zero: leave it out where the base stops exactly, or say how far off it comes to stand")
+    return covariance
 
 
 def _read_obstacles(root: Node) -> list[Obstacle]:

@@ -15,7 +15,7 @@ from . import png
 from .raster import Camera, render
 from .scene import PlanScene
 from .style import FLOOR, OBSTACLE, PART, ROUTE, STOP, TRAY_BODY, rgb, tray_colour
-from .topview import footprint, outline_edges, shared_cells, stop_intersections
+from .topview import arrival_ellipse, footprint, outline_edges, shared_cells, stop_intersections
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -126,8 +126,9 @@ def _room_limits(axes: Axes, plan: dict[str, Any]) -> None:
 def write_topview(plan: dict[str, Any], path: Path) -> Path:
     """Room, base regions, stops with their discs, and the route, seen from above."""
     from matplotlib.lines import Line2D
-    from matplotlib.patches import Circle, Patch
+    from matplotlib.patches import Circle, Ellipse, Patch
 
+    covariance = plan["scenario"].get("arrival_covariance")
     figure = _pyplot()(10, 7.2)
     axes = figure.add_subplot()
     axes.set_facecolor(FLOOR)
@@ -150,6 +151,9 @@ def write_topview(plan: dict[str, Any], path: Path) -> Path:
         axes.add_patch(Circle((x, y), stop["radius"], facecolor=STOP, alpha=0.2, edgecolor=STOP, zorder=5))
         uncertainty = plan["scenario"]["positioning_uncertainty"]
         axes.add_patch(Circle((x, y), uncertainty, fill=False, edgecolor=STOP, linestyle=":", linewidth=1.5, zorder=6))
+        if covariance is not None:
+            along, across, turn = arrival_ellipse(covariance)
+            axes.add_patch(Ellipse((x, y), 2 * along, 2 * across, angle=turn, fill=False, edgecolor=STOP, zorder=6))
         _draw_arrow(axes, stop["pose"], STOP)
         axes.text(
             x, y, str(number), ha="center", va="center", color="white", fontsize=10, weight="bold", zorder=9,
@@ -166,6 +170,8 @@ def write_topview(plan: dict[str, Any], path: Path) -> Path:
         legend.append(Line2D([], [], color=ROUTE, linewidth=1.0, label="cells that a stop's trays share"))
     legend.append(Line2D([], [], color=ROUTE, linestyle="--", label="route of the base"))
     legend.append(Line2D([], [], color=STOP, linestyle=":", label="positioning uncertainty"))
+    if covariance is not None:
+        legend.append(Line2D([], [], color=STOP, label="95 of 100 arrivals"))
     legend.append(Patch(facecolor=STOP, alpha=0.25, edgecolor=STOP, label="disc that stays inside the region"))
     _room_limits(axes, plan)
     axes.set_xlabel("x [m]")

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import base64
+import math
 from collections.abc import Collection
 from html import escape
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from .._files import write_file
 from ..part_supply.premises import premises, premises_text
@@ -170,6 +173,7 @@ def _top_view(plan: dict[str, Any]) -> str:
 
 def _stops(plan: dict[str, Any]) -> str:
     rows = []
+    arrivals = "arrival_covariance" in plan["scenario"]
     for number, stop in enumerate(plan["stops"], start=1):
         picks = [p for p in plan["picks"] if p["stop"] == number - 1]
         seconds = sum(m["times"][-1] for p in picks for m in p["motions"])
@@ -180,6 +184,7 @@ def _stops(plan: dict[str, Any]) -> str:
                 " ".join(_tray(plan, t) for t in stop["trays"]),
                 f"{stop['pose'][0]:.3f}, {stop['pose'][1]:.3f}, {stop['pose'][2]:.3f}",
                 f"{stop['radius']:.3f}",
+                *([_share(stop["arrivals"])] if arrivals else []),
                 f"{leg['length']:.2f}",
                 clock(leg["duration"]),
                 str(len(picks)),
@@ -187,7 +192,25 @@ def _stops(plan: dict[str, Any]) -> str:
             ]
         )
     head = ["stop", "trays", "base x, y, heading [m, m, rad]", "disc [m]", "drive [m]", "drive", "picks", "arm time"]
-    return "<h2>Stops</h2>" + table(head, rows, {3, 4, 5, 6, 7})
+    if not arrivals:
+        return "<h2>Stops</h2>" + table(head, rows, {3, 4, 5, 6, 7})
+    head.insert(4, "arrivals that serve all (95 %)")
+    deviations = np.sqrt(np.diag(plan["scenario"]["arrival_covariance"]))
+    note = (
+        f"Arrivals are drawn about each stop with standard deviations of {deviations[0]:.3f} m and {deviations[1]:.3f} m along x and y and "
+        f"{np.degrees(deviations[2]):.1f}°; in brackets the interval that the share lies in at 95 % confidence. All stops serve all their parts in "
+        f"{100 * np.prod([stop['arrivals']['served'] / stop['arrivals']['drawn'] for stop in plan['stops']]):.1f} % of the rounds; "
+        "<code>mmgrasp arrive</code> plans anew from where the base really stands."
+    )
+    return f"<h2>Stops</h2><p class='lead'>{note}</p>" + table(head, rows, {3, 4, 5, 6, 7, 8})
+
+
+def _share(seen: dict[str, int]) -> str:
+    """A share and its 95 % interval (Wilson)."""
+    n, p, z = seen["drawn"], seen["served"] / seen["drawn"], 1.96
+    middle = (p + z * z / (2 * n)) / (1 + z * z / n)
+    half = z * math.sqrt(p * (1 - p) / n + (z / (2 * n)) ** 2) / (1 + z * z / n)
+    return f"{100 * p:.1f} % ({100 * (middle - half):.1f} to {100 * min(middle + half, 1):.1f})"
 
 
 def _picks(plan: dict[str, Any]) -> str:

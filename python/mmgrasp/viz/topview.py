@@ -12,6 +12,7 @@ from ..bodies import Body, stored_pose, stored_shape
 from .style import OBSTACLE, PART, ROUTE, STOP, TRAY_BODY, tray_colour
 
 SCALE = 120.0  # pixels a metre
+CHI_SQUARED_95 = 5.991  # of two degrees of freedom
 
 
 def footprint(shapes: list[dict[str, Any]], pose: dict[str, Any]) -> list[np.ndarray]:
@@ -94,6 +95,19 @@ def stop_intersections(plan: dict[str, Any]) -> list[dict[str, Any]]:
     """The intersections of two or more regions that the stops use."""
     used = [plan["intersections"][stop["intersection"]] for stop in plan["stops"] if stop["intersection"] >= 0]
     return [item for item in used if len(item["trays"]) > 1]
+
+
+def arrival_ellipse(covariance: list[list[float]]) -> tuple[float, float, float]:
+    """Half axes [m] of the ellipse in which 95 of 100 arrivals come to stand, and how far the first is turned from x [deg]."""
+    variances, axes = np.linalg.eigh(np.array(covariance)[:2, :2])
+    across, along = np.sqrt(CHI_SQUARED_95 * np.maximum(variances, 0))
+    return float(along), float(across), float(np.degrees(np.arctan2(axes[1, 1], axes[0, 1])))
+
+
+def sure(stop: dict[str, Any]) -> str:
+    """How likely a stop serves all its parts, as the end of a sentence."""
+    seen = stop.get("arrivals")
+    return f"; all parts from {100 * seen['served'] / seen['drawn']:.1f} % of the arrivals" if seen else ""
 
 
 class TopView:
@@ -203,15 +217,26 @@ class TopView:
         uncertainty = self.scenario["positioning_uncertainty"] * SCALE
         for number, stop in enumerate(self.plan["stops"], start=1):
             x, y = self.point(stop["pose"])
-            title = f"stop {number}: trays {', '.join(stop['trays'])}; disc of {stop['radius']:.3f} m"
+            title = f"stop {number}: trays {', '.join(stop['trays'])}; disc of {stop['radius']:.3f} m" + sure(stop)
             self.items.append(
                 f'<g class="stop"><title>{escape(title)}</title>'
                 f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{stop["radius"] * SCALE:.1f}" class="disc"/>'
                 f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{uncertainty:.1f}" class="uncertainty"/>'
+                + self._arrivals(x, y)
                 + self._arrow(stop["pose"], STOP, 0.30)
                 + f'<circle cx="{x:.1f}" cy="{y:.1f}" r="13" fill="{STOP}"/>'
                 f'<text x="{x:.1f}" y="{y + 5:.1f}" class="stopnumber">{number}</text></g>'
             )
+
+    def _arrivals(self, x: float, y: float) -> str:
+        """The ellipse in which 95 of 100 arrivals come to stand."""
+        if "arrival_covariance" not in self.scenario:
+            return ""
+        along, across, turn = arrival_ellipse(self.scenario["arrival_covariance"])
+        return (
+            f'<ellipse cx="{x:.1f}" cy="{y:.1f}" rx="{along * SCALE:.1f}" ry="{across * SCALE:.1f}" '
+            f'transform="rotate({-turn:.1f} {x:.1f} {y:.1f})" class="uncertainty"/>'
+        )
 
     def _arrow(self, pose: Sequence[float], colour: str, length: float) -> str:
         x, y = self.point(pose)

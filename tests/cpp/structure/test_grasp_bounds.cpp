@@ -275,7 +275,8 @@ TEST(BranchAndBound, ProvesTheOptimumOfAGrid) {
     for (double at = 0.02; at <= pipe.length(section) - 0.02 + 1e-9; at += 0.005) {
       for (int degree = -180; degree < 180; degree += 2) {
         for (const bool flip : {false, true}) {
-          const auto found = evaluator.evaluate(place_pipe_grasp(pipe, section, at, degree * M_PI / 180, flip, puma_tool()));
+          const auto found =
+              evaluator.evaluate(place_pipe_grasp(pipe, section, at, degree * M_PI / 180, flip, puma_tool()));
           if (found.outcome == Outcome::solved) grid = std::min(grid, found.cost);
         }
       }

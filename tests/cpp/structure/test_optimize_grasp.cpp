@@ -26,7 +26,8 @@ double least_of_grid(const ObjectPathProblem& problem, double step, double turn)
     for (double at = 0.02; at <= pipe.length(section) - 0.02 + 1e-9; at += step) {
       for (double angle = -M_PI; angle < M_PI; angle += turn) {
         for (const bool flip : {false, true}) {
-          const ObjectPathResult found = evaluator.evaluate(place_pipe_grasp(pipe, section, at, angle, flip, puma_tool()));
+          const ObjectPathResult found =
+              evaluator.evaluate(place_pipe_grasp(pipe, section, at, angle, flip, puma_tool()));
           if (found.outcome == Outcome::solved) least = std::min(least, found.cost);
         }
       }
@@ -210,9 +211,8 @@ TEST(OptimizeGrasp, FrontSearchesCoverTheFrontOfAGrid) {
     }
   }
   for (const Costs& a : all) {
-    const bool beaten = std::any_of(all.begin(), all.end(), [&](const Costs& b) {
-      return b != a && b[0] <= a[0] && b[1] <= a[1] && b[2] <= a[2];
-    });
+    const bool beaten = std::any_of(
+        all.begin(), all.end(), [&](const Costs& b) { return b != a && b[0] <= a[0] && b[1] <= a[1] && b[2] <= a[2]; });
     if (!beaten) front.push_back(a);
   }
   ASSERT_GT(front.size(), 20u);

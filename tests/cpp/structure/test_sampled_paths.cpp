@@ -142,7 +142,8 @@ TEST(SampledPaths, TooFineAGridIsRefused) {
   const Poses poses{pose_from_xyz_rpy({0, 0, 0.6}, {0, 0, 0}), pose_from_xyz_rpy({0.1, 0, 0.6}, {0, 0, 0})};
   ObjectPathOptions options;
   options.base_spacing = 0.001;
-  EXPECT_THROW(follow_object_path(along(robot.group(), poses, {"l6"}), some_grasps(1, 7).front(), options), InvalidInput);
+  EXPECT_THROW(follow_object_path(along(robot.group(), poses, {"l6"}), some_grasps(1, 7).front(), options),
+               InvalidInput);
 }
 
 /// Random graphs, all paths walked; checks that refuse some vertices and edges.

@@ -276,7 +276,8 @@ TEST(SupportedFrame, ItsDeflectionIsThatOfTheHeldFrame) {
   const Pose T = pose_from_xyz_rpy({1, 2, 3}, {0.4, -0.7, 1.1});
   const BeamState held = SupportedFrame(frame, {at(2, 0.05)}).state(T.linear().transpose() * Vector3d(0, 0, -kG));
   EXPECT_NEAR(frame.deflection(grasp, T).displacement.value, held.displacement.value, 1e-15);
-  EXPECT_NEAR(frame.deflection(std::vector<BeamSupport>{at(2, 0.05)}, T, 2 * kG).displacement.value, 2 * held.displacement.value, 1e-15);
+  EXPECT_NEAR(frame.deflection(std::vector<BeamSupport>{at(2, 0.05)}, T, 2 * kG).displacement.value,
+              2 * held.displacement.value, 1e-15);
 }
 
 TEST(SupportedFrame, RefusesWhatCannotHold) {

@@ -38,6 +38,7 @@ verify::PlanToCheck to_check(const PartSupplyProblem& problem, const PartSupplyP
   check.start = problem.start;
   check.goal = problem.goal;
   check.positioning_uncertainty = problem.options.positioning_uncertainty;
+  check.arrival_covariance = problem.arrival_covariance;
   check.T_base_bin = problem.place_region.T_base_bin;
   check.bin_size = problem.place_region.size;
   check.drop_height = problem.place_region.drop_height;
@@ -55,6 +56,8 @@ verify::PlanToCheck to_check(const PartSupplyProblem& problem, const PartSupplyP
   for (const BaseRegion& region : plan.regions) check.regions.push_back({region.tray, region.cells});
   for (const Stop& stop : plan.stops) {
     verify::CheckedStop checked{stop.pose, stop.radius, {}};
+    checked.arrivals = static_cast<int>(stop.arrivals);
+    checked.arrivals_served = static_cast<int>(stop.arrivals_served);
     for (TrayId tray : stop.trays) checked.trays.push_back(problem.trays[tray].name);
     check.stops.push_back(checked);
   }
@@ -95,6 +98,34 @@ TEST(PartSupply, SmallStoreroomIsSolvedAndHoldsForTheIndependentChecker) {
   for (const verify::Fault& fault : result.faults)
     ADD_FAILURE() << fault.code << ", " << fault.where << ": " << fault.message;
   EXPECT_EQ(result.minimal_stops, 1);
+}
+
+/// With a covariance, stops say how many arrivals they serve, and the independent checker counts the same share.
+TEST(PartSupply, StopsSayHowSureTheyAre) {
+  PartSupplyProblem problem = test::small_storeroom();
+  problem.options.grid.resolution = 0.08;
+  problem.options.positioning_uncertainty = 0.02;
+  const PartSupplyPlan without = plan_part_supply(problem, database());
+  problem.arrival_covariance = Eigen::Vector3d(0.05, 0.03, 0.2).asDiagonal();
+  problem.options.robustness_samples = 1000;
+  const PartSupplyPlan plan = plan_part_supply(problem, database());
+  ASSERT_EQ(plan.outcome, Outcome::solved) << all_messages(plan);
+  EXPECT_EQ(plan.stops.size(), without.stops.size());
+  for (const Stop& stop : without.stops) EXPECT_EQ(stop.arrivals, 0u);
+  for (const Stop& stop : plan.stops) {
+    EXPECT_EQ(stop.arrivals, 1000u);
+    EXPECT_GT(stop.arrivals_served, 50u);
+    EXPECT_LT(stop.arrivals_served, 990u);
+    EXPECT_GE(stop.radius, problem.options.positioning_uncertainty);
+  }
+  verify::PlanToCheck check = to_check(problem, plan);
+  for (const verify::Fault& fault : verify::check_plan(check).faults)
+    ADD_FAILURE() << fault.code << ", " << fault.where << ": " << fault.message;
+  int& served = check.stops[0].arrivals_served;
+  served += served > 500 ? -200 : 200;
+  const verify::PlanCheckResult spoiled = verify::check_plan(check);
+  ASSERT_EQ(spoiled.faults.size(), 1u);
+  EXPECT_EQ(spoiled.faults[0].code, "arrival-rate");
 }
 
 /// `twist` has no limits: its numbers run on from motion to motion and from pick to pick. Home is reached up to its

@@ -64,7 +64,7 @@ struct MMGRASP_EXPORT PopulationOptions {
   double neighbourhood = 0.2;  ///< Its width as a share of each range at first; in (0, 1]. P2 does not print it.
   double shrinking = 0.8;      ///< Factor after a round without progress; in (0, 1]. P2 does not print it.
   // "ga"
-  double mutation_rate = 0.3;   ///< Chance of each variable; in [0, 1].
+  double mutation_rate = 0.3;  ///< Chance of each variable; in [0, 1].
   /// Half width of a real variable's mutation as a share of its range, where the variable has none of its own; in
   /// (0, 1].
   double mutation_size = 0.25;

@@ -59,8 +59,8 @@ struct MMGRASP_EXPORT BeamFrame {
   /// The same frame with a node more on a member, 0 < distance < length: the member keeps the first part, the second
   /// part comes last. Nothing else changes, nor does how it bends.
   BeamFrame split(int member, double distance) const;
-  /// How it bends when a hand holds it there in this pose, or several supports do; include supported_frame.hpp. For many
-  /// poses of one grasp keep a SupportedFrame. Throws as that does. `gravity` along the world's -z [m/s2].
+  /// How it bends when a hand holds it there in this pose, or several supports do; include supported_frame.hpp. For
+  /// many poses of one grasp keep a SupportedFrame. Throws as that does. `gravity` along the world's -z [m/s2].
   BeamState deflection(const Grasp& grasp, const Pose& T_world_object, double gravity = kGravity) const;
   BeamState deflection(const std::vector<BeamSupport>& supports, const Pose& T_world_object,
                        double gravity = kGravity) const;

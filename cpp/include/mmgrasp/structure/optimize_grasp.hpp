@@ -28,8 +28,8 @@ struct MMGRASP_EXPORT GraspSearchOptions {
   std::string algorithm = "bees";
   GraspNeighbourhood neighbourhood = GraspNeighbourhood::connected_sections;
   PopulationOptions population;
-  /// Further searches with as many evaluations, each for another mix of the three objectives, so that the Pareto front is
-  /// searched and not only passed; >= 0.
+  /// Further searches with as many evaluations, each for another mix of the three objectives, so that the Pareto front
+  /// is searched and not only passed; >= 0.
   int front_searches = 0;
   double max_gap = 1e-3;    ///< branch_and_bound: as a share of the cost; in (0, 1).
   int max_boxes = 1000000;  ///< branch_and_bound: budget in boxes bounded; > 0.

@@ -61,9 +61,11 @@ MMGRASP_EXPORT Intersections maximal_intersections(const BaseGrid& grid, const s
 /// Where the base stops and which trays it serves there.
 struct MMGRASP_EXPORT Stop {
   Eigen::Vector3d pose = Eigen::Vector3d::Zero();  ///< x, y, theta
-  double radius = 0;          ///< Radius of the disc around it in which every target part stays graspable [m].
-  std::vector<TrayId> trays;  ///< Trays served here, ascending; each tray at one stop.
-  int intersection = -1;      ///< Index into the robust intersections; -1: unknown.
+  double radius = 0;                ///< Radius of the disc around it in which every target part stays graspable [m].
+  std::vector<TrayId> trays;        ///< Trays served here, ascending; each tray at one stop.
+  int intersection = -1;            ///< Index into the robust intersections; -1: unknown.
+  std::size_t arrivals = 0;         ///< Arrivals of the base drawn by PartSupplyProblem::arrival_covariance; 0: none.
+  std::size_t arrivals_served = 0;  ///< Those of them from which all parts of its trays can be grasped.
 };
 
 struct MMGRASP_EXPORT StopSet {

@@ -64,6 +64,10 @@ struct MMGRASP_EXPORT PartSupplyOptions {
   void check() const;
 };
 
+/// Throws InvalidInput naming `arrival_covariance` when this is no covariance of x, y [m^2] and theta [rad^2]:
+/// symmetric, without a negative eigenvalue, variances of at most 1.
+MMGRASP_EXPORT void check_arrival_covariance(const Eigen::Matrix3d& covariance);
+
 /// Everything the part-supply planner needs: the robot and its hand, the room, the trays with their parts, and where
 /// parts go.
 ///
@@ -87,6 +91,10 @@ struct MMGRASP_EXPORT PartSupplyProblem {
   Eigen::Vector3d goal = Eigen::Vector3d::Zero();
   PlaceRegion place_region;
   PartSupplyOptions options;
+  /// How far from a stop the base comes to stand: covariance of x, y [m^2] and theta [rad^2] in the world's axes,
+  /// errors normally distributed. Stops then stand where most arrivals serve all their parts. Zero: not asked for,
+  /// discs of the positioning uncertainty are all that counts.
+  Eigen::Matrix3d arrival_covariance = Eigen::Matrix3d::Zero();
   /// Throws InvalidInput naming the field, the value and the rule.
   void check() const;
 };

@@ -68,6 +68,7 @@ struct MMGRASP_EXPORT CheckedStop {
   Eigen::Vector3d pose = Eigen::Vector3d::Zero();
   double radius = 0;
   std::vector<std::string> trays;
+  int arrivals = 0, arrivals_served = 0;  ///< Arrivals that the planner drew, and those that served all parts.
 };
 
 struct MMGRASP_EXPORT CheckedRegion {
@@ -136,6 +137,8 @@ struct MMGRASP_EXPORT PlanToCheck {
   Eigen::VectorXd home;
   Eigen::Vector3d start = Eigen::Vector3d::Zero(), goal = Eigen::Vector3d::Zero();
   double positioning_uncertainty = 0.1;
+  /// Of x, y [m^2] and theta [rad^2] about a stop, in the world's axes; zero: arrivals are not judged.
+  Eigen::Matrix3d arrival_covariance = Eigen::Matrix3d::Zero();
   Pose T_base_bin = Pose::Identity();
   Eigen::Vector2d bin_size = Eigen::Vector2d(0.3, 0.3);
   double drop_height = 0.03;
@@ -201,9 +204,9 @@ struct MMGRASP_EXPORT PlanCheckOptions {
 ///   wheels), `base-off-course` (where its velocities do not lead);
 /// - the route: `route-legs` (their number), `route-ends`, `route-not-driveable`, `route-collision`, `too-long`;
 /// - stops: `region-malformed`, `region-missing`, `region-too-small`, `stop-heading`, `stop-radius`,
-///   `stop-outside-region`, `not-minimal`, `lower-bound`, `not-robust`, `region-inflated` (base poses in it that serve
-///   nothing), `region-incomplete` (cells left out that serve everything: the least number of stops is then not
-///   proven);
+///   `stop-outside-region`, `not-minimal`, `lower-bound`, `not-robust`, `arrival-rate` (arrivals serve all parts more
+///   or less often than said, by more than chance), `region-inflated` (base poses in it that serve nothing),
+///   `region-incomplete` (cells left out that serve everything: the least number of stops is then not proven);
 /// - what only describes: `route-figures` (length, turning, duration), `acceleration` (stored ones above the limits or
 ///   not those of the velocities), `bad-figures` (robustness rate below what is required or above 1, intersections that
 ///   lie elsewhere).

@@ -46,10 +46,9 @@ class ParticleSwarm : public PopulationSearch {
     if (wanted + 1 < swarm.size()) {
       for (std::size_t k = 0; k < swarm.size(); ++k)
         distance[k] = squared_distance(run, swarm[own].now.x, swarm[k].now.x);
-      std::nth_element(order.begin() + 1, order.begin() + 1 + static_cast<std::ptrdiff_t>(wanted), order.end(),
-                       [&](std::size_t a, std::size_t b) {
-                         return distance[a] != distance[b] ? distance[a] < distance[b] : a < b;
-                       });
+      std::nth_element(
+          order.begin() + 1, order.begin() + 1 + static_cast<std::ptrdiff_t>(wanted), order.end(),
+          [&](std::size_t a, std::size_t b) { return distance[a] != distance[b] ? distance[a] < distance[b] : a < b; });
       order.resize(wanted + 1);
       std::sort(order.begin() + 1, order.end());  // ties go to the earlier one
     }

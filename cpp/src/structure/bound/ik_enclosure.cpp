@@ -162,8 +162,8 @@ void IkEnclosure::spherical(const FormPose& T, std::vector<FormConfiguration>& o
         return turned(2, three, true, turned(1, two, true, turned(0, one, false, x)));
       };
       if (wrist_sign_ != 0) {
-        euler_wrist(back(carried_direction(T, h_[4].cross(h_[3]))), back(carried_direction(T, h_[4])), back(carried_direction(T, h_[3])),
-                    {-first, second, third, {}, {}, {}, {}}, out);
+        euler_wrist(back(carried_direction(T, h_[4].cross(h_[3]))), back(carried_direction(T, h_[4])),
+                    back(carried_direction(T, h_[3])), {-first, second, third, {}, {}, {}, {}}, out);
         continue;
       }
       const FormVector Rh = back(h_now), Ry = back(y_now);
@@ -204,7 +204,8 @@ void IkEnclosure::euler_wrist(const FormVector& Rx, const FormVector& Ry, const 
 void IkEnclosure::parallel(const FormPose& T, std::vector<FormConfiguration>& out) const {
   const Vector3d h = h_[1], o = meeting_, y = across(h);
   const Vector3d side = across(h_[5]), other = h_[5].cross(side);
-  const FormVector o_now = carried_point(T, o), h_now = carried_direction(T, h_[5]), side_now = carried_direction(T, side), other_now = carried_direction(T, other);
+  const FormVector o_now = carried_point(T, o), h_now = carried_direction(T, h_[5]),
+                   side_now = carried_direction(T, side), other_now = carried_direction(T, other);
   const double sign3 = h_[2].dot(h) > 0 ? 1 : -1, sign4 = h_[3].dot(h) > 0 ? 1 : -1;
   for (const LinearForm& first : to_plane(h_[0], h, o_now - form(p_[0]), LinearForm(h.dot(o - p_[0])))) {
     const Turn one(first);
@@ -213,12 +214,13 @@ void IkEnclosure::parallel(const FormPose& T, std::vector<FormConfiguration>& ou
     for (const LinearForm& fifth : to_plane(h_[4], h, form(h_[5]), dot(h, uh))) {
       const Turn five(fifth);
       // R_6^T R_5^T h = G^T R_1 h; coordinates of the right side along h_5, side and other
-      const FormVector right =
-          dot(h_now, h_first) * form(h_[5]) + dot(side_now, h_first) * form(side) + dot(other_now, h_first) * form(other);
+      const FormVector right = dot(h_now, h_first) * form(h_[5]) + dot(side_now, h_first) * form(side) +
+                               dot(other_now, h_first) * form(other);
       const LinearForm sixth = -onto(h_[5], turned(4, five, true, form(h)), right);
       const Turn six(sixth);
       const FormVector inner = turned(5, six, true, turned(4, five, true, form(y)));
-      const FormVector inner_now = dot(h_[5], inner) * h_now + dot(side, inner) * side_now + dot(other, inner) * other_now;
+      const FormVector inner_now =
+          dot(h_[5], inner) * h_now + dot(side, inner) * side_now + dot(other, inner) * other_now;
       const LinearForm sum = onto(h, form(y), turned(0, one, false, inner_now));
       const Turn all(sum);
       const FormVector p4 = u + turned(1, all, false, form(p_[3] - o));

@@ -43,9 +43,10 @@ void check_members(const BeamFrame& frame) {
     check_part(i, "section", [&] { member.section.check(); });
     check_part(i, "material", [&] { member.material.check(); });
     if (member.material.stress_limit > 0 && !member.section.stresses_known()) {
-      require(false, entry("members", i) + ".material.stress_limit", member.material.stress_limit,
-              "must be zero for a section whose y_extent, z_extent or torsion_modulus is not given: its stresses are not "
-              "known");
+      require(
+          false, entry("members", i) + ".material.stress_limit", member.material.stress_limit,
+          "must be zero for a section whose y_extent, z_extent or torsion_modulus is not given: its stresses are not "
+          "known");
     }
     const Vector3d& y = member.y_towards;
     const Vector3d x = (frame.nodes[b] - frame.nodes[a]).normalized();

@@ -69,9 +69,7 @@ BoxSearch divide_boxes(const ObjectPathProblem& problem, const Pipe& pipe, const
   for (std::size_t i = 0; i < sections.sections().size(); ++i) {
     for (const bool flipped : {false, true}) {
       const double half = sections.room(static_cast<int>(i)) / 2;
-      open.push({{sections.sections()[i], flipped, options.grasp.end_margin + half, half, 0, kPi},
-                 0,
-                 out.boxes++});
+      open.push({{sections.sections()[i], flipped, options.grasp.end_margin + half, half, 0, kPi}, 0, out.boxes++});
     }
   }
   double settled = kInfinity;  // least bound of boxes that are not divided any more

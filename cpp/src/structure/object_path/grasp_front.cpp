@@ -42,9 +42,8 @@ std::vector<int> pareto_front(const std::vector<FeasibleGrasp>& all) {
   });
   std::vector<int> front;
   for (const int i : order) {
-    const bool beaten = std::any_of(front.begin(), front.end(), [&](int k) {
-      return (costs[k] <= costs[i]).all() && (costs[k] < costs[i]).any();
-    });
+    const bool beaten = std::any_of(front.begin(), front.end(),
+                                    [&](int k) { return (costs[k] <= costs[i]).all() && (costs[k] < costs[i]).any(); });
     if (!beaten) front.push_back(i);
   }
   return front;

@@ -11,6 +11,7 @@
 #include "task/base_region/search_area.hpp"
 #include "task/base_sequence/base_routes.hpp"
 #include "task/part_supply/alternative_base_poses.hpp"
+#include "task/part_supply/arrivals.hpp"
 #include "task/part_supply/impossible.hpp"
 #include "task/part_supply/obstructions.hpp"
 #include "task/part_supply/plan_intersections.hpp"
@@ -67,6 +68,7 @@ class PartSupply {
       }
       return std::move(plan_);
     }
+    if (!tell_arrivals()) return std::move(plan_);
     plan_.outcome = Outcome::solved;
     return std::move(plan_);
   }
@@ -100,9 +102,35 @@ class PartSupply {
       if (check.stopped) return false;
       plan_.robustness_rate = check.rate();
       if (check.cells_removed == 0 || round + 1 == kRobustnessRounds) {
-        return check.rate() >= kRequiredRate || obstructed(explain_robustness(check, plan_.stops));
+        if (check.rate() < kRequiredRate) return obstructed(explain_robustness(check, plan_.stops));
+        break;
       }
     }
+    return !arrivals_matter() || seek_likely_stops(regions);
+  }
+
+  bool arrivals_matter() const { return !problem_.arrival_covariance.isZero(0); }
+
+  bool seek_likely_stops(std::vector<BaseRegion>& regions) {
+    const StageClock clock(plan_, "arrivals");
+    seek_likely_poses(problem_, *evaluator_, plan_.grid, regions, plan_.stops, kRequiredRate, monitor_);
+    const RobustnessResult check = check_robustness(problem_, *evaluator_, plan_.grid, plan_.stops, regions, monitor_);
+    plan_.robustness_rate = check.rate();
+    return !check.stopped;
+  }
+
+  /// How sure each stop is, where it is in the end.
+  bool tell_arrivals() {
+    if (!arrivals_matter()) return true;
+    const StageClock clock(plan_, "arrivals");
+    const StopSamples seen =
+        count_arrivals(problem_, *evaluator_, plan_.stops, problem_.options.robustness_samples, true, monitor_);
+    for (std::size_t i = 0; i < plan_.stops.size(); ++i) {
+      plan_.stops[i].arrivals = seen.stops[i].samples;
+      plan_.stops[i].arrivals_served = seen.stops[i].good;
+    }
+    if (seen.stopped) plan_.outcome = Outcome::stopped;
+    return !seen.stopped;
   }
 
   bool solve_stops(const std::vector<BaseRegion>& regions) {

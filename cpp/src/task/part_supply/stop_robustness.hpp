@@ -1,9 +1,11 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
 #include <string>
 #include <vector>
 
+#include "mmgrasp/core/random.hpp"
 #include "mmgrasp/task/base_pose_evaluator.hpp"
 #include "mmgrasp/task/base_region.hpp"
 #include "mmgrasp/task/base_sequence.hpp"
@@ -15,6 +17,31 @@ struct StopShare {
   std::size_t samples = 0, good = 0;
   double rate() const { return samples ? static_cast<double>(good) / static_cast<double>(samples) : 1.0; }
 };
+
+/// A base pose from which a part of a stop's trays cannot be grasped; `part` is empty where the robot cannot even
+/// stand.
+struct Miss {
+  TrayId tray;
+  std::string part;
+  Eigen::Vector3d pose;
+};
+
+/// What base poses drawn at some stops gave.
+struct StopSamples {
+  bool stopped = false;
+  std::vector<StopShare> stops;
+  std::vector<std::vector<Miss>> misses;  ///< By stop.
+};
+
+/// Where the base comes to stand when it drives to a stop.
+using DrawBasePose = std::function<Eigen::Vector3d(const Stop& stop, Rng& rng)>;
+
+/// Draws `samples` base poses at each stop and counts those where the robot can stand at home and grasp every target
+/// part of the stop's trays, random restarts of IK included. `seed` and the number of a draw decide it, so that the
+/// answer is the same at any thread count; `common` draws are the same at every stop.
+StopSamples sample_base_poses(const PartSupplyProblem& problem, const BasePoseEvaluator& evaluator,
+                              const std::vector<Stop>& stops, std::size_t samples, std::uint64_t seed, bool common,
+                              const DrawBasePose& draw, const Monitor& monitor);
 
 /// The same for all stops. Each is to be robust by itself: many good ones do not make up for a bad one.
 struct RobustnessResult {

@@ -1,5 +1,6 @@
 #include "mmgrasp/task/problem.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <set>
 #include <sstream>
@@ -67,6 +68,18 @@ void check_trays(const PartSupplyProblem& problem) {
 
 }  // namespace
 
+void check_arrival_covariance(const Eigen::Matrix3d& covariance) {
+  const char* field = "arrival_covariance";
+  require(covariance.allFinite(), field, covariance.sum(), "must be finite");
+  const double size = covariance.cwiseAbs().maxCoeff();
+  const double skew = (covariance - covariance.transpose()).cwiseAbs().maxCoeff();
+  require(skew <= 1e-9 * size, field, skew, "must be symmetric; by so much do two entries differ");
+  require(covariance.diagonal().maxCoeff() <= 1, field, covariance.diagonal().maxCoeff(),
+          "must hold variances of at most 1 m^2 and 1 rad^2");
+  const double least = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvalues()[0];
+  require(least >= -1e-9 * size, field, least, "must have no negative eigenvalue, as no covariance has");
+}
+
 void PartSupplyOptions::check() const {
   require_within(grid.resolution, 1e-3, 10, "grid.resolution", "m");
   require_within(grid.max_distance, 0, 1000, "grid.max_distance", "m");
@@ -101,6 +114,9 @@ void PartSupplyProblem::check() const {
           place_region.size.minCoeff(), "must be positive");
   require_not_negative(place_region.drop_height, "place_region.drop_height");
   require(scene.attached().empty(), "scene", "an attached object", "must hold nothing attached at the start");
+  check_arrival_covariance(arrival_covariance);
+  require(arrival_covariance.isZero(0) || options.robustness_samples > 0, "robustness_samples", 0,
+          "must be positive with an arrival_covariance: so many arrivals are drawn");
   check_trays(*this);
 }
 

@@ -1,4 +1,5 @@
-// Checks the stops with the base displaced: parts stay graspable from drawn poses.
+// Checks the stops with the base displaced: parts stay graspable from drawn poses, and as often as the plan says.
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -13,51 +14,82 @@ namespace {
 
 constexpr int kChunks = 20;  // Pieces of a stop's samples that are worked on independently.
 
-/// What one piece of one stop's samples gave.
-struct ChunkResult {
+constexpr double kSureDeviations = 4.5;  // Of the difference of two shares: one right plan in 150,000 stops exceeds it.
+constexpr double kSearchSlack = 0.02;    // Of a share: grasps that a search with kArrivalTries does not find.
+constexpr int kTries = 1500;
+constexpr int kArrivalTries = 300;  // Where many arrivals fail, each that does costs all its tries.
+
+/// What base poses are counted for.
+struct Question {
+  const char* stage;
+  double may_lose;  ///< Samples of a stop; more end the count early.
+  int tries;        ///< IK solutions tried before a part counts as lost ...
+  bool thoroughly;  ///< ... and many more, since the verdict hangs on each sample.
+};
+
+/// What some of a stop's samples gave.
+struct Served {
   int samples = 0, good = 0;
   std::vector<int> lost;  ///< At how many samples a wanted part was the one that failed, by part.
   int home_blocked = 0;
 };
 
-/// The samples of a stop along a winding path over the disc, so that neighbours in the list are neighbours on the
-/// floor.
-std::vector<Eigen::Vector3d> sorted_samples(const Context& context, std::size_t stop) {
-  const double radius = context.plan.positioning_uncertainty;
-  const Eigen::Vector3d& pose = context.plan.stops[stop].pose;
-  Rng rng(context.options.seed, stop);
-  std::vector<Eigen::Vector2d> offsets;
-  for (int i = 0; i < context.options.samples; ++i) offsets.push_back(rng.in_disc(radius));
-  const double strip = radius > 0 ? radius / 10 : 1.0;
-  const auto key = [strip](const Eigen::Vector2d& p) {
+/// Base poses drawn at a stop by their offsets, along a winding path over the floor, so that neighbours in the list are
+/// neighbours on it.
+std::vector<Eigen::Vector3d> winding(const Eigen::Vector3d& stop, std::vector<Eigen::Vector3d> offsets) {
+  double farthest = 0;
+  for (const Eigen::Vector3d& offset : offsets) farthest = std::max(farthest, std::abs(offset.x()));
+  const double strip = farthest > 0 ? farthest / 10 : 1.0;
+  const auto key = [strip](const Eigen::Vector3d& p) {
     const int row = static_cast<int>(std::floor(p.x() / strip));
     return std::make_pair(row, row % 2 ? -p.y() : p.y());
   };
   std::sort(offsets.begin(), offsets.end(), [&](const auto& a, const auto& b) { return key(a) < key(b); });
-  std::vector<Eigen::Vector3d> poses;
-  for (const Eigen::Vector2d& offset : offsets)
-    poses.emplace_back(pose.x() + offset.x(), pose.y() + offset.y(), pose.z());
-  return poses;
+  for (Eigen::Vector3d& offset : offsets) offset += stop;
+  return offsets;
+}
+
+std::vector<Eigen::Vector3d> in_disc(const Context& context, std::size_t stop) {
+  Rng rng(context.options.seed, stop);
+  std::vector<Eigen::Vector3d> offsets;
+  for (int i = 0; i < context.options.samples; ++i) {
+    const Eigen::Vector2d offset = rng.in_disc(context.plan.positioning_uncertainty);
+    offsets.emplace_back(offset.x(), offset.y(), 0.0);
+  }
+  return winding(context.plan.stops[stop].pose, std::move(offsets));
+}
+
+std::vector<Eigen::Vector3d> arrivals(const Context& context, std::size_t stop) {
+  const Eigen::LDLT<Eigen::Matrix3d> factors(context.plan.arrival_covariance);
+  const Eigen::Vector3d deviations = factors.vectorD().cwiseMax(0.0).cwiseSqrt();
+  Rng rng(context.options.seed + 1, stop);
+  std::vector<Eigen::Vector3d> offsets;
+  for (int i = 0; i < context.options.samples; ++i) {
+    const double x = rng.normal(), y = rng.normal(), theta = rng.normal();
+    const Eigen::Vector3d scaled = deviations.cwiseProduct(Eigen::Vector3d(x, y, theta));
+    offsets.emplace_back(factors.transpositionsP().transpose() * Eigen::Vector3d(factors.matrixL() * scaled));
+  }
+  return winding(context.plan.stops[stop].pose, std::move(offsets));
 }
 
 /// One piece of a stop. It ends early once it alone has lost more samples than the whole stop may lose.
-ChunkResult run_chunk(const Context& context, const std::vector<Eigen::Vector3d>& poses, std::size_t begin,
-                      std::size_t end, const std::vector<int>& wanted, Judge& judge, GraspSearch search) {
-  ChunkResult result;
+Served run_chunk(const Context& context, const std::vector<Eigen::Vector3d>& poses, std::size_t begin, std::size_t end,
+                 const Question& question, const std::vector<int>& wanted, Judge& judge, GraspSearch search) {
+  Served result;
   result.lost.assign(wanted.size(), 0);
-  const double allowed = (1 - context.options.required_rate) * context.options.samples;
   std::vector<std::size_t> order(wanted.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   for (std::size_t i = begin; i < end; ++i) {
-    if (result.samples - result.good > allowed || context.monitor.stopped()) break;
+    if (result.samples - result.good > question.may_lose || context.monitor.stopped()) break;
     judge.set_base(poses[i]);
     ++result.samples;
     if (judge.touch(context.plan.home, 0)) {
       ++result.home_blocked;
       continue;
     }
-    const auto failed =
-        std::find_if(order.begin(), order.end(), [&](std::size_t k) { return !search.find_thoroughly(wanted[k]); });
+    const auto failed = std::find_if(order.begin(), order.end(), [&](std::size_t k) {
+      return !(question.thoroughly ? search.find_thoroughly(wanted[k]) : search.find(wanted[k]));
+    });
     if (failed == order.end()) {
       ++result.good;
     } else {
@@ -68,23 +100,47 @@ ChunkResult run_chunk(const Context& context, const std::vector<Eigen::Vector3d>
   return result;
 }
 
-StopRate summarize(const Context& context, std::size_t stop, const std::vector<int>& wanted,
-                   const std::vector<ChunkResult>& chunks, Faults& faults) {
+/// Counts for each stop from how many of its poses the robot can stand at home and grasp what it should there.
+std::vector<Served> count_served(const Context& context, const std::vector<std::vector<Eigen::Vector3d>>& poses,
+                                 const Question& question, std::size_t& configurations) {
+  const std::size_t stops = poses.size();
+  std::vector<std::vector<int>> wanted;
+  for (const CheckedStop& stop : context.plan.stops) wanted.push_back(wanted_parts(context.plan, stop.trays));
+  const Pools pools = planned_holds(context);
+  std::vector<Judge> judges(resolve_threads(context.options.threads), Judge(context.stage));
+  std::vector<Served> chunks(stops * kChunks);
+  const auto work = [&](std::size_t item, int worker) {
+    const std::size_t stop = item / kChunks, chunk = item % kChunks, count = poses[stop].size();
+    GraspSearch search(context, judges[worker], pools, Rng(context.options.seed, stops + item), question.tries);
+    chunks[item] = run_chunk(context, poses[stop], count * chunk / kChunks, count * (chunk + 1) / kChunks, question,
+                             wanted[stop], judges[worker], std::move(search));
+  };
+  parallel_for(stops * kChunks, context.options.threads, work, context.monitor, question.stage);
+  for (const Judge& judge : judges) configurations += judge.queries();
+  std::vector<Served> served(stops);
+  for (std::size_t item = 0; item < chunks.size(); ++item) {
+    Served& sum = served[item / kChunks];
+    sum.samples += chunks[item].samples;
+    sum.good += chunks[item].good;
+    sum.home_blocked += chunks[item].home_blocked;
+    sum.lost.resize(wanted[item / kChunks].size());
+    for (std::size_t i = 0; i < chunks[item].lost.size(); ++i) sum.lost[i] += chunks[item].lost[i];
+  }
+  return served;
+}
+
+StopRate summarize(const Context& context, std::size_t stop, const Served& served, Faults& faults) {
+  const std::vector<int> wanted = wanted_parts(context.plan, context.plan.stops[stop].trays);
   StopRate rate;
   rate.stop = static_cast<int>(stop);
-  std::vector<int> lost(wanted.size(), 0);
-  int home_blocked = 0;
-  for (const ChunkResult& chunk : chunks) {
-    rate.samples += chunk.samples;
-    rate.good += chunk.good;
-    home_blocked += chunk.home_blocked;
-    for (std::size_t i = 0; i < chunk.lost.size(); ++i) lost[i] += chunk.lost[i];
-  }
+  rate.samples = served.samples;
+  rate.good = served.good;
+  const std::vector<int>& lost = served.lost;
   const auto worst = std::max_element(lost.begin(), lost.end());
   if (worst != lost.end() && *worst > 0) rate.worst_part = context.plan.parts[wanted[worst - lost.begin()]].body.name;
   if (rate.good >= context.options.required_rate * rate.samples) return rate;
   std::string why = rate.worst_part.empty() ? "" : "; most often '" + rate.worst_part + "' has no free grasp";
-  if (home_blocked > 0) why += "; at " + std::to_string(home_blocked) + " the robot collides at home";
+  if (served.home_blocked > 0) why += "; at " + std::to_string(served.home_blocked) + " the robot collides at home";
   faults.push_back({"not-robust", "stop " + std::to_string(stop),
                     "all parts can be grasped from " + std::to_string(rate.good) + " of " +
                         std::to_string(rate.samples) + " base poses, required is a share of " +
@@ -96,27 +152,31 @@ StopRate summarize(const Context& context, std::size_t stop, const std::vector<i
 
 void check_robustness(const Context& context, Faults& faults, std::vector<StopRate>& rates,
                       std::size_t& configurations) {
-  const std::size_t stops = context.plan.stops.size();
   std::vector<std::vector<Eigen::Vector3d>> poses;
-  std::vector<std::vector<int>> wanted;
-  for (std::size_t stop = 0; stop < stops; ++stop) {
-    poses.push_back(sorted_samples(context, stop));
-    wanted.push_back(wanted_parts(context.plan, context.plan.stops[stop].trays));
+  for (std::size_t stop = 0; stop < context.plan.stops.size(); ++stop) poses.push_back(in_disc(context, stop));
+  const Question question{"robustness", (1 - context.options.required_rate) * context.options.samples, kTries, true};
+  const std::vector<Served> served = count_served(context, poses, question, configurations);
+  for (std::size_t stop = 0; stop < served.size(); ++stop)
+    rates.push_back(summarize(context, stop, served[stop], faults));
+}
+
+void check_arrivals(const Context& context, Faults& faults, std::size_t& configurations) {
+  const std::vector<CheckedStop>& stops = context.plan.stops;
+  if (context.plan.arrival_covariance.isZero(0)) return;
+  std::vector<std::vector<Eigen::Vector3d>> poses;
+  for (std::size_t stop = 0; stop < stops.size(); ++stop) poses.push_back(arrivals(context, stop));
+  const Question question{"arrivals", static_cast<double>(context.options.samples), kArrivalTries, false};
+  const std::vector<Served> served = count_served(context, poses, question, configurations);
+  for (std::size_t i = 0; i < served.size() && !context.monitor.stopped(); ++i) {
+    const double mine = served[i].samples, said = stops[i].arrivals;
+    const double both = (served[i].good + stops[i].arrivals_served) / (mine + said);
+    const double off = std::abs(served[i].good / mine - stops[i].arrivals_served / said);
+    if (off <= kSearchSlack + kSureDeviations * std::sqrt(both * (1 - both) * (1 / mine + 1 / said))) continue;
+    faults.push_back({"arrival-rate", "stop " + std::to_string(i),
+                      "all parts can be grasped from " + std::to_string(served[i].good) + " of " +
+                          std::to_string(served[i].samples) + " arrivals, the plan says " +
+                          std::to_string(stops[i].arrivals_served) + " of " + std::to_string(stops[i].arrivals)});
   }
-  const Pools pools = planned_holds(context);
-  std::vector<Judge> judges(resolve_threads(context.options.threads), Judge(context.stage));
-  std::vector<std::vector<ChunkResult>> results(stops, std::vector<ChunkResult>(kChunks));
-  const auto work = [&](std::size_t item, int worker) {
-    const std::size_t stop = item / kChunks, chunk = item % kChunks, count = poses[stop].size();
-    GraspSearch search(context, judges[worker], pools, Rng(context.options.seed, stops + item));
-    results[stop][chunk] = run_chunk(context, poses[stop], count * chunk / kChunks, count * (chunk + 1) / kChunks,
-                                     wanted[stop], judges[worker], std::move(search));
-  };
-  parallel_for(stops * kChunks, context.options.threads, work, context.monitor, "robustness");
-  for (std::size_t stop = 0; stop < stops; ++stop) {
-    rates.push_back(summarize(context, stop, wanted[stop], results[stop], faults));
-  }
-  for (const Judge& judge : judges) configurations += judge.queries();
 }
 
 }  // namespace mmgrasp::verify::detail

@@ -32,12 +32,11 @@ from mmgrasp.grasping import (
     ObjectPathEvaluator,
     ObjectPathProblem,
     SupportedFrame,
-    beam_frame,
-    copper,
     rectangular_section,
     round_section,
 )
-from mmgrasp.problems.pipe_cells import FINGERS, pipe_robot, pipe_structures
+from mmgrasp.problems.pipe_cells import pipe_robot, pipe_structures
+from mmgrasp.reproduce.grasp_search_runs import arc_around_arm, carrying
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
@@ -199,26 +198,12 @@ def arc_problem(robot: str, number: int, poses: int) -> tuple[ObjectPathProblem,
     _, arm, gripper = pipe_robot(robot)
     pipe = pipe_structures()[number - 1]
     scale = 1.0 if robot == "tm14like" else 0.75
-    path = []
-    for s in np.linspace(0, 1, poses):
-        turn = -0.6 + 1.2 * s
-        at = [0.6 * scale * np.cos(turn), 0.6 * scale * np.sin(turn), 0.45 * scale + 0.1 * np.sin(np.pi * s)]
-        path.append(mg.pose(at, rpy=[0.3 * s, 0.4 * s, turn]))
+    path = arc_around_arm(0.6 * scale, 0.45 * scale, 0.1, poses)
     world = mg.World()
     world.add_box("table", [2.6, 2.6, 0.05], mg.pose([0, 0, -0.03]))
     world.add_cylinder("column", 0.05, 0.4, mg.pose([0.35 * scale, 0, 0.2]))
     grasps = [g for g in pipe.sample_grasps(300, gripper=gripper, seed=3)]
-    problem = ObjectPathProblem(
-        arm,
-        world,
-        pipe.shapes(),
-        np.array(path),
-        gripper=gripper,
-        touch_links=sorted(FINGERS),
-        frame=beam_frame(pipe, 0.010, copper()),
-        object_name="pipe",
-    )
-    return problem, grasps
+    return carrying(arm, gripper, pipe, world, path), grasps
 
 
 def paths_table() -> str:

@@ -25,7 +25,16 @@ TOP_KEYS = "format version name structure start path robot"
 TOP_OPTIONAL = "gripper obstacles allowed_collisions padding preferences limits timing compare options"
 SHAPE_KEYS = "box cylinder sphere mesh shapes scale"
 PIPE = "pipe"
-SEARCH_OPTIONS = ("algorithm", "max_evaluations", "seed", "max_gap", "max_boxes", "front_searches", "time_limit", "threads")
+SEARCH_OPTIONS = (
+    "algorithm",
+    "max_evaluations",
+    "seed",
+    "max_gap",
+    "max_boxes",
+    "front_searches",
+    "time_limit",
+    "threads",
+)
 NOT_HERE = {"max_sag", "motion_weight", "deflection_weight", "manipulability_weight"} | {
     f"{word}_scale" for word in ("motion", "deflection", "manipulability")
 }

@@ -18,7 +18,19 @@ from typing import Any
 import numpy as np
 
 from .. import _core
-from .._core import ObjectPathProblem, Outcome, PipeProvenance, World, beam_frame, copper, optimize_grasp, pose
+from .._core import (
+    Hand,
+    JointGroup,
+    ObjectPathProblem,
+    Outcome,
+    Pipe,
+    PipeProvenance,
+    World,
+    beam_frame,
+    copper,
+    optimize_grasp,
+    pose,
+)
 from ..problems.pipe_cells import FINGERS, pipe_robot, pipe_structures
 from .entry import Context
 from .statements import Pair
@@ -64,23 +76,20 @@ def options_of(method: str, setting: int) -> dict[str, Any]:
     }
 
 
-@functools.cache
-def path_problem(pipe: str, home: tuple[float, ...] | None = None) -> ObjectPathProblem:
-    """`home`: where the arm stands before."""
-    _, arm, gripper = pipe_robot("kr6like")
-    if home is not None:
-        arm = arm.with_reference(dict(zip(arm.names, home, strict=True)))
-    structure = pipe_structures()[PIPES[pipe] - 1]
-    world = World()
-    world.add_box("table", [2.6, 2.6, 0.05], pose([0, 0, -0.03]))
-    world.add_cylinder("column", 0.05, 0.3, pose([0.2625, 0, 0.15]))
-    # As drawn, no grasp takes Pipe2 along this path without meeting the table: it lies with its ends up.
-    lies = pose([0, 0, 0], rpy=[np.pi if pipe == "Pipe2" else 0.0, 0, 0])
+def arc_around_arm(radius: float, height: float, rise: float, poses: int) -> list[np.ndarray]:
+    """Along an arc around the world's z while the object turns, half way as much higher as `rise` says [m]."""
     path = []
-    for s in np.linspace(0, 1, POSES):
+    for s in np.linspace(0, 1, poses):
         turn = 1.2 * (s - 0.5)
-        at = [0.45 * np.cos(turn), 0.45 * np.sin(turn), 0.34 + 0.08 * np.sin(np.pi * s)]
-        path.append(pose(at, rpy=[0.3 * s, 0.4 * s, turn]) @ lies)
+        at = [radius * np.cos(turn), radius * np.sin(turn), height + rise * np.sin(np.pi * s)]
+        path.append(pose(at, rpy=[0.3 * s, 0.4 * s, turn]))
+    return path
+
+
+def carrying(
+    arm: JointGroup, gripper: Hand, structure: Pipe, world: World, path: list[np.ndarray]
+) -> ObjectPathProblem:
+    """A pipe of P2's copper tube; only the fingers may touch it."""
     return ObjectPathProblem(
         arm,
         world,
@@ -91,6 +100,21 @@ def path_problem(pipe: str, home: tuple[float, ...] | None = None) -> ObjectPath
         frame=beam_frame(structure, 0.010, copper()),
         object_name="pipe",
     )
+
+
+@functools.cache
+def path_problem(pipe: str, home: tuple[float, ...] | None = None) -> ObjectPathProblem:
+    """`home`: where the arm stands before."""
+    _, arm, gripper = pipe_robot("kr6like")
+    if home is not None:
+        arm = arm.with_reference(dict(zip(arm.names, home, strict=True)))
+    world = World()
+    world.add_box("table", [2.6, 2.6, 0.05], pose([0, 0, -0.03]))
+    world.add_cylinder("column", 0.05, 0.3, pose([0.2625, 0, 0.15]))
+    # As drawn, no grasp takes Pipe2 along this path without meeting the table: it lies with its ends up.
+    lies = pose([0, 0, 0], rpy=[np.pi if pipe == "Pipe2" else 0.0, 0, 0])
+    path = [T @ lies for T in arc_around_arm(0.45, 0.34, 0.08, POSES)]
+    return carrying(arm, gripper, pipe_structures()[PIPES[pipe] - 1], world, path)
 
 
 def search(pipe: str, home: tuple[float, ...] | None = None, **options: Any) -> _core.GraspOptimum:

@@ -221,9 +221,29 @@ def test_the_optimum_is_proven_to_a_gap() -> None:
         assert other.path.cost >= best.lower_bound
         assert (other.lower_bound, other.gap, other.boxes) == (0, 1, 0)
     assert grasp_search_names() == [*population_search_names(), "branch_and_bound"]
-    for wrong, rule in (("max_gap", 0.0), ("max_boxes", 0), ("time_limit", 0.0), ("threads", -1)):
+    for wrong, rule in (
+        ("max_gap", 0.0),
+        ("max_boxes", 0),
+        ("time_limit", 0.0),
+        ("threads", -1),
+        ("front_searches", -1),
+    ):
         with pytest.raises(mg.InvalidInput, match=wrong):
             optimize_grasp(problem, pipe, algorithm="branch_and_bound", **{wrong: rule})  # type: ignore[arg-type]
+
+
+def test_front_searches_find_what_the_search_for_cost_passes_by() -> None:
+    once, more = (search("Pipe1", max_evaluations=300, seed=1, front_searches=n) for n in (0, 3))
+    assert more.evaluations == 4 * once.evaluations == 1200
+    assert list(more.history) == list(once.history)
+
+    def least(found: Any) -> np.ndarray:
+        rows = [(f.joint_motion, f.deflection, f.force_manipulability) for f in found.feasible]
+        return np.array(rows).min(axis=0)
+
+    assert np.all(least(more) <= least(once)) and np.any(least(more) < least(once))
+    assert more.path.cost <= once.path.cost
+    assert np.all(np.diff([more.feasible[i].joint_motion for i in more.front]) >= 0)
 
 
 def test_no_grasp_at_a_millimetre_and_a_degree_undercuts_the_proven_one() -> None:

@@ -12,26 +12,51 @@ from .._core import Mesh
 SIDES = 64
 
 
+Section = float | tuple[float, float]
+"""A circle by its radius, or a rectangle by its two sides, about the z axis [m]."""
+
+
 def turned(profile: ArrayLike, sides: int = SIDES) -> Mesh:
     """The solid that a closed profile of (radius, z) rows [m] sweeps about z; radii of 0 lie on the axis."""
-    rows = np.asarray(profile, dtype=float)
-    angles = 2 * np.pi * np.arange(sides) / sides
+    return lofted([(float(r), float(z)) for r, z in np.asarray(profile, dtype=float)], sides)
+
+
+def lofted(profile: Sequence[tuple[Section, float]], sides: int = SIDES) -> Mesh:
+    """As `turned`, but a row of the closed profile may also be a rectangle: rings one after the other, joined by faces.
+
+    Sections at one height must contain one another.
+    """
+    angles = {2 * np.pi * k / sides for k in range(sides)}
+    for section, _ in profile:
+        if isinstance(section, tuple):
+            corner = float(np.arctan2(section[1], section[0]))
+            angles |= {corner, np.pi - corner, np.pi + corner, 2 * np.pi - corner}
+    turn = np.array(sorted(angles))
+    turn = turn[np.diff(turn, append=turn[0] + 2 * np.pi) > 1e-9]
+    count = len(turn)
     vertices: list[Sequence[float]] = []
     rings: list[list[int]] = []
-    for r, z in rows:
-        if r <= 0:
-            rings.append([len(vertices)] * sides)
+    for section, z in profile:
+        if isinstance(section, float) and section <= 0:
+            rings.append([len(vertices)] * count)
             vertices.append((0.0, 0.0, z))
         else:
-            rings.append(list(range(len(vertices), len(vertices) + sides)))
-            vertices.extend((r * np.cos(a), r * np.sin(a), z) for a in angles)
+            rings.append(list(range(len(vertices), len(vertices) + count)))
+            radii = np.full(count, section) if isinstance(section, float) else _to_edge(section, turn)
+            vertices.extend((r * np.cos(a), r * np.sin(a), z) for r, a in zip(radii, turn, strict=True))
     faces = []
     for lower, upper in zip(rings, [*rings[1:], rings[0]], strict=True):
-        for i in range(sides):
-            k = (i + 1) % sides
+        for i in range(count):
+            k = (i + 1) % count
             faces += [(lower[i], lower[k], upper[k]), (lower[i], upper[k], upper[i])]
     kept = [f for f in faces if len(set(f)) == 3]
     return Mesh.from_arrays(np.array(vertices), np.array(kept))
+
+
+def _to_edge(sides: tuple[float, float], angles: np.ndarray) -> np.ndarray:
+    """How far the edge of a rectangle is from its middle, in each direction."""
+    with np.errstate(divide="ignore"):
+        return np.asarray(np.minimum(sides[0] / 2 / np.abs(np.cos(angles)), sides[1] / 2 / np.abs(np.sin(angles))))
 
 
 def block(size: ArrayLike) -> Mesh:

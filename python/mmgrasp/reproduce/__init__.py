@@ -28,6 +28,7 @@ from . import (
     robust_sets,
     rows,
     rrt_mg,
+    segmentation,
     shelf,
     solver_regions,
     three_ways,
@@ -57,6 +58,7 @@ TOPICS = (
     tracking,
     physics,
     three_ways,
+    segmentation,
     gripper_sets,
 )
 ENTRIES: dict[str, Entry] = {e.name: e for topic in TOPICS for e in topic.ENTRIES}

@@ -34,7 +34,12 @@ def write_segment_pictures(
 ) -> None:
     """segments.png, a colour a segment, and diameters.png, thin (blue) to thick (red) by rank."""
     write_png(folder / "segments.png", two_sides(coloured(vertices, triangles, labels, segment_colour)))
-    shades = np.zeros(len(labels), dtype=int)
+    write_png(folder / "diameters.png", two_sides(diameter_bodies(vertices, triangles, diameters)))
+
+
+def diameter_bodies(vertices: np.ndarray, triangles: np.ndarray, diameters: np.ndarray) -> list[Body]:
+    """Faces in twelve shades by their shape diameter, from thin (blue) to thick (red)."""
+    shades = np.zeros(len(diameters), dtype=int)
     if np.ptp(diameters) > 0:
         share = (np.log(np.maximum(diameters, 1e-9)) - np.log(np.quantile(diameters[diameters > 0], 0.02))) / max(
             1e-9, np.log(np.quantile(diameters, 0.98) / np.quantile(diameters[diameters > 0], 0.02))
@@ -44,7 +49,7 @@ def write_segment_pictures(
     def shade(index: int) -> str:
         return _hex(colorsys.hsv_to_rgb(0.66 * (1 - index / (_SHADES - 1)), 0.75, 0.9))
 
-    write_png(folder / "diameters.png", two_sides(coloured(vertices, triangles, shades, shade)))
+    return coloured(vertices, triangles, shades, shade)
 
 
 def _hex(colour: tuple[float, float, float]) -> str:

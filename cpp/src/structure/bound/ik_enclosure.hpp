@@ -29,6 +29,7 @@ using FormConfiguration = std::array<LinearForm, 7>;
 /// whose axes 2, 3 and 4 are parallel and 5 and 6 meet.
 class MMGRASP_EXPORT IkEnclosure {
  public:
+  /// Whether a group has such a geometry.
   static bool takes(const JointGroup& group);
   /// Throws InvalidInput for other groups; what an arm is off its special geometry (at most 1e-6) widens all answers.
   explicit IkEnclosure(const JointGroup& group);

@@ -212,20 +212,20 @@ TEST(PathBound, NoGraspOfABoxCostsLess) {
 /// What is excluded collides with every grasp of the box, and something is.
 TEST(CollisionProof, ExcludesWhatCollidesEverywhereInTheBox) {
   ObjectPathProblem problem = arc_past_post(3);
-  problem.world.add("wall", Box{{0.02, 1.5, 1.5}}, pose_from_xyz_rpy({-0.12, 0, 0.7}, {0, 0, 0}));
-  problem.world.add("roof", Box{{1.5, 1.5, 0.1}}, pose_from_xyz_rpy({0, 0, 0.95}, {0, 0, 0}));
+  problem.world.add("wall", Box{{0.3, 1.5, 1.5}}, pose_from_xyz_rpy({-0.25, 0, 0.7}, {0, 0, 0}));
+  problem.world.add("roof", Box{{1.5, 1.5, 0.4}}, pose_from_xyz_rpy({0, 0, 0.95}, {0, 0, 0}));
   const Pipe pipe = figure_3_4();
   const detail::PathBound bound(problem, pipe, {}, puma_tool());
   detail::CollisionProof proof(problem);
   detail::AttachedObject object(problem);
   Rng rng(2);
   int excluded = 0, checked = 0;
-  for (int trial = 0; trial < 400; ++trial) {
+  for (int trial = 0; trial < 2000; ++trial) {
     GraspBox box;
     box.section = static_cast<int>(rng.index(6));
     box.flipped = rng.index(2) == 1;
-    box.half_length = 1e-3;
-    box.half_angle = 5e-3;
+    box.half_length = 3e-4;
+    box.half_angle = 1e-3;
     box.length = rng.uniform(0.03, pipe.length(box.section) - 0.03);
     box.angle = rng.uniform(-M_PI, M_PI);
     const auto place = [&](double x, double y) {

@@ -1,5 +1,6 @@
 #include "structure/bound/ik_enclosure.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <string>
 
@@ -39,9 +40,9 @@ struct Geometry {
   bool spherical = false;
 };
 
-/// Longer than the tip and any axis' point are from any axis in any configuration: consecutive points are on one link.
-double longest_lever(const Screws& s) {
-  double sum = (s.tip.t - s.p[5]).norm();
+/// Longer than the tip and the wrist are from any axis in any configuration: consecutive points are on one link.
+double longest_lever(const Screws& s, const Vector3d& wrist) {
+  double sum = std::max((s.tip.t - s.p[5]).norm(), (wrist - s.p[5]).norm());
   for (int i = 0; i < 5; ++i) sum += (s.p[i + 1] - s.p[i]).norm();
   return sum;
 }
@@ -82,7 +83,7 @@ IkEnclosure::IkEnclosure(const JointGroup& group) : group_(group) {
   // A turn about an axis that is off by dh in direction and dp in place differs by at most 5 dh in rotation and moves
   // points by 5 dh times their distance and 2 dp.
   off_rotation_ = off_position_ = kPolished;
-  const double lever = longest_lever(s);
+  const double lever = longest_lever(s, meeting_);
   const auto snap = [&](int i, const Vector3d& h, const Vector3d& p) {
     const double dh = (h - h_[i]).norm(), dp = (p - p_[i]).cross(h_[i]).norm();
     off_rotation_ += 5 * dh;

@@ -239,7 +239,7 @@ def test_front_searches_find_what_the_search_for_cost_passes_by() -> None:
 
     def least(found: Any) -> np.ndarray:
         rows = [(f.joint_motion, f.deflection, f.force_manipulability) for f in found.feasible]
-        return np.array(rows).min(axis=0)
+        return np.asarray(np.array(rows).min(axis=0))
 
     assert np.all(least(more) <= least(once)) and np.any(least(more) < least(once))
     assert more.path.cost <= once.path.cost
@@ -333,7 +333,10 @@ def test_frames_bend_as_pynite_says(plain: dict[str, Any]) -> None:
     """Tubes and turned rectangles, masses, forces and moments on nodes (benchmarks/structure/run.py --store)."""
     make: dict[str, Any] = {"round": round_section, "rectangle": rectangular_section}
     metal = BeamMaterial(8960, 110e9, 40e9)
-    members = [BeamMember(*m["nodes"], make[m["shape"][0]](*m["shape"][1:]), metal, m["y"]) for m in plain["members"]]
+    members = [
+        BeamMember(m["nodes"][0], m["nodes"][1], make[m["shape"][0]](*m["shape"][1:]), metal, m["y"])
+        for m in plain["members"]
+    ]
     frame = BeamFrame(plain["nodes"], members, [NodeLoad(**load) for load in plain["loads"]])
     held = next(i for i, m in enumerate(members) if plain["fixed"] in m.nodes)
     a, b = members[held].nodes

@@ -32,8 +32,8 @@ def test_objects_are_made_by_their_constructors(kind: type) -> None:
 
 def test_their_common_base_has_no_objects() -> None:
     """pybind11 throws a C++ exception there, through C: the process would end. Old pickles and hand-made classes come by."""
-    base = mg.World.__mro__[-2]
-    odd = type("Odd", (base,), {})
+    base: Any = mg.World.__mro__[-2]
+    odd: Any = type("Odd", (base,), {})
     for call in (base, odd, lambda: base.__new__(base), lambda: odd.__new__(odd), lambda: base(3)):
         with pytest.raises(TypeError, match="no objects of its own"):
             call()

@@ -248,7 +248,7 @@ def run_table_3_9(context: Context) -> Result:
         for larger, smaller in (("GA", "Str3"), ("PSO", "Str3"), ("Str2", "Str3"), ("Str1", "Str3")):
             result.statement(f"share of failures: {larger} less {smaller}", pairs(failures, "failed", larger, smaller))
         for pipe, values in zip(pipes, (v for _, v in result.rows), strict=False):
-            worst = max(METHODS, key=lambda m, p=pipe: TABLE_3_9[p][METHODS.index(m)])
+            worst = METHODS[int(np.argmax(TABLE_3_9[pipe]))]
             result.trend(
                 f"{pipe}: {worst} fails most often",
                 values[worst][1] == max(v[1] for v in values.values() if v[0] is not None),

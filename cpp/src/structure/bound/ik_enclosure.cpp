@@ -36,7 +36,7 @@ double distance_to_axis(const Screws& s, int i, const Vector3d& x) {
 
 /// Which of the two kinds an arm is.
 struct Geometry {
-  Vector3d meeting;  ///< Of axes 5 and 6.
+  Vector3d meeting;  ///< Where axes 5 and 6 meet.
   bool spherical = false;
 };
 

@@ -36,7 +36,7 @@ std::vector<int> pareto_front(const std::vector<FeasibleGrasp>& all) {
   for (const FeasibleGrasp& each : all) costs.push_back(objectives(each));
   std::vector<int> order(all.size());
   std::iota(order.begin(), order.end(), 0);
-  // In this order whoever beats another comes before it.
+  // Whoever beats another comes before it in this order.
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
     return std::lexicographical_compare(costs[a].begin(), costs[a].end(), costs[b].begin(), costs[b].end());
   });

@@ -9,7 +9,7 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr int kPlacesPerMember = 3;  // places between the ends of each member that is not clamped
-constexpr double kFit = 1e-9;  // share of its size that an interpolated displacement may be off
+constexpr double kFit = 1e-9;        // share of its size that an interpolated displacement may be off
 
 struct Place {
   int member;

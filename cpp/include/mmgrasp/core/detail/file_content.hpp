@@ -7,7 +7,7 @@
 
 namespace mmgrasp::detail {
 
-constexpr std::uintmax_t kLargestText = 256'000'000;  ///< Robots, and what describes the arrays of a folder [bytes].
+constexpr std::uintmax_t kLargestText = 256'000'000;    ///< Robots, and what describes the arrays of a folder [bytes].
 constexpr std::uintmax_t kLargestFile = 4'000'000'000;  ///< Meshes, clouds, octrees and roadmaps [bytes].
 constexpr std::uintmax_t kLargestMap = 64'000'000'000;  ///< Maps of surfaces [bytes].
 

@@ -1,5 +1,6 @@
 #include "arrays.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numeric>
@@ -39,10 +40,13 @@ py::array array_of(const py::handle& value, const std::string& name, const std::
   throw InvalidInput(name + " = <" + given + ">: must be an array of " + wanted);
 }
 
-Array numbers(const py::handle& value, const std::string& name, int dimensions, const std::string& wanted,
-              bool infinite = false) {
+/// `shape`: lengths, -1 for any. They are looked at first: a copy of what cannot fit may take all memory.
+Array numbers(const py::handle& value, const std::string& name, const std::vector<Eigen::Index>& shape,
+              const std::string& wanted, bool infinite = false) {
   const py::array raw = array_of(value, name, "fiu", "numbers of shape " + wanted);
-  if (raw.ndim() != dimensions) wrong_shape(name, raw, wanted);
+  const auto given = shape_of(raw);
+  const auto fits = [](Eigen::Index length, py::ssize_t found) { return length < 0 || length == found; };
+  if (!std::equal(shape.begin(), shape.end(), given.begin(), given.end(), fits)) wrong_shape(name, raw, wanted);
   const Array array = Array::ensure(raw);
   if (!array) {
     PyErr_Clear();
@@ -79,10 +83,7 @@ std::vector<double> finite_argument(std::vector<double> values, const std::strin
 
 Eigen::VectorXd vector_argument(const py::handle& value, const std::string& name, Eigen::Index size) {
   const std::string wanted = "(" + count_text(size, "n") + ",)";
-  const Array array = numbers(value, name, 1, wanted);
-  if (size >= 0 && array.size() != size) {
-    wrong_shape(name, array, wanted);
-  }
+  const Array array = numbers(value, name, {size}, wanted);
   return Eigen::Map<const Eigen::VectorXd>(array.data(), array.size());
 }
 
@@ -96,11 +97,7 @@ Eigen::Vector3d vector3_argument(const py::handle& value, const std::string& nam
 
 static Array rows_of_numbers(const py::handle& value, const std::string& name, Eigen::Index columns, bool infinite) {
   const std::string wanted = "(m, " + count_text(columns, "n") + ")";
-  Array array = numbers(value, name, 2, wanted, infinite);
-  if (columns >= 0 && array.shape(1) != columns) {
-    wrong_shape(name, array, wanted);
-  }
-  return array;
+  return numbers(value, name, {-1, columns}, wanted, infinite);
 }
 
 py::array_t<double> batch_argument(const py::handle& value, const std::string& name, Eigen::Index columns) {
@@ -118,10 +115,7 @@ Pose pose_argument(const py::object& value, const std::string& name) {
 }
 
 Pose pose_argument(const ArrayLike& value, const std::string& name) {
-  const Array array = numbers(value, name, 2, "(4, 4)");
-  if (array.shape(0) != 4 || array.shape(1) != 4) {
-    wrong_shape(name, array, "(4, 4)");
-  }
+  const Array array = numbers(value, name, {4, 4}, "(4, 4)");
   return checked_pose(Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(array.data()), name);
 }
 
@@ -173,7 +167,8 @@ py::array_t<double> to_array(const Poses& poses) {
 
 template <typename Vector>
 static py::array_t<double> stack(const std::vector<Vector>& rows) {
-  const py::ssize_t columns = rows.empty() ? 0 : rows.front().size();
+  constexpr py::ssize_t kColumns = std::max<py::ssize_t>(0, Vector::RowsAtCompileTime);  // without rows: as (0, 3)
+  const py::ssize_t columns = rows.empty() ? kColumns : rows.front().size();
   py::array_t<double> out({static_cast<py::ssize_t>(rows.size()), columns});
   for (std::size_t i = 0; i < rows.size(); ++i) {
     std::copy(rows[i].data(), rows[i].data() + columns, out.mutable_data() + i * columns);

@@ -23,6 +23,14 @@ PyObject* new_error(py::module_& m, const char* name, const py::tuple& bases, co
   return type;
 }
 
+/// The message may hold bytes of a path that are no UTF-8: these are written as escapes.
+void raise(PyObject* type, const std::exception& error) {
+  const std::string text = error.what();
+  const auto size = static_cast<Py_ssize_t>(text.size());
+  const auto message = py::reinterpret_steal<py::object>(PyUnicode_DecodeUTF8(text.data(), size, "backslashreplace"));
+  if (message) PyErr_SetObject(type, message.ptr());
+}
+
 void bind_errors(py::module_& m) {
   error_types.error =
       new_error(m, "Error", py::make_tuple(py::handle(PyExc_Exception)), "Base of all errors of mmgrasp.");
@@ -36,11 +44,11 @@ void bind_errors(py::module_& m) {
     try {
       if (pointer) std::rethrow_exception(pointer);
     } catch (const InvalidInput& e) {
-      PyErr_SetString(error_types.invalid_input, e.what());
+      raise(error_types.invalid_input, e);
     } catch (const IoError& e) {
-      PyErr_SetString(error_types.io_error, e.what());
+      raise(error_types.io_error, e);
     } catch (const Error& e) {
-      PyErr_SetString(error_types.error, e.what());
+      raise(error_types.error, e);
     }
   });
 }

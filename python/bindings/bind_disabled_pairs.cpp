@@ -25,7 +25,9 @@ std::filesystem::path cache_folder() {
   const char *folder = std::getenv("XDG_CACHE_HOME"), *home = std::getenv("HOME");
   if (folder && *folder == '/') return std::filesystem::path(folder) / "mmgrasp";
   if (home && *home == '/') return std::filesystem::path(home) / ".cache" / "mmgrasp";
-  return std::filesystem::temp_directory_path() / "mmgrasp-cache";
+  std::error_code error;
+  const std::filesystem::path temporary = std::filesystem::temp_directory_path(error);
+  return (error ? std::filesystem::path("/tmp") : temporary) / "mmgrasp-cache";
 }
 
 /// Pairs by link names, one "a<tab>b<tab>reason" a line; the reason as a number. Empty when the file is absent or
@@ -134,7 +136,8 @@ void bind_disabled_pairs(py::module_& m) {
   m.def("with_sampled_pairs", &sampled, py::arg("robot"), py::kw_only(), py::arg("progress") = py::none(),
         "compute_disabled_pairs with default options, its result cached on disk under the robot's hash.");
   m.def(
-      "cache_folder", [] { return cache_folder().string(); }, "$XDG_CACHE_HOME/mmgrasp, or ~/.cache/mmgrasp.");
+      "cache_folder", [] { return py::reinterpret_steal<py::str>(PyUnicode_DecodeFSDefault(cache_folder().c_str())); },
+      "$XDG_CACHE_HOME/mmgrasp, or ~/.cache/mmgrasp.");
 }
 
 }  // namespace mmgrasp::python

@@ -12,6 +12,7 @@ from pathlib import Path
 from ._core import IoError
 
 ASSETS = Path(__file__).parent / "assets"
+LARGEST_FILE = 4_000_000_000  # of a mesh or any other part of a robot [bytes], as in C++
 SCHEMAS = Path(__file__).parent / "schemas"
 
 
@@ -72,8 +73,8 @@ def _target(path: Path) -> Path:
 
 
 def write_file(path: Path, content: str | bytes) -> None:
-    """Writes all or nothing: a reader never sees half a file. Of a link the file is replaced that it leads to."""
-    data = content.encode() if isinstance(content, str) else content
+    """Writes all or nothing: a reader never sees half a file. Of a link the file is replaced that it leads to. What has no UTF-8 (of a path's name, say) is written as escapes."""
+    data = content.encode(errors="backslashreplace") if isinstance(content, str) else content
     target = _target(path)
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
@@ -104,14 +105,15 @@ def read_text(path: Path, most: int) -> str:
 
 def read_bytes(path: Path, most: int) -> bytes:
     """The content of a regular file of at most `most` bytes; raises IoError otherwise."""
-    data = read_head(path, most + 1)
-    if len(data) > most:
-        raise IoError(f"{printable(os.fspath(path))}: cannot be read: is larger than {most} bytes")
-    return data
+    return _read(path, None, most)
 
 
 def read_head(path: Path, count: int) -> bytes:
     """The first `count` bytes of a regular file, or all it has; raises IoError."""
+    return _read(path, count, None)
+
+
+def _read(path: Path, count: int | None, most: int | None) -> bytes:
     shown = printable(os.fspath(path))
     try:
         with open(path, "rb", opener=_open_now) as file:
@@ -120,13 +122,17 @@ def read_head(path: Path, count: int) -> bytes:
                 raise IoError(f"{shown}: cannot be read: is a folder")
             if not stat.S_ISREG(found.st_mode):
                 raise IoError(f"{shown}: cannot be read: is no regular file")
-            return file.read(count)
+            # Not read(most): Python sets aside as much memory as it is asked for.
+            data = file.read(count) if most is None or found.st_size <= most else None
     except OSError as error:
         if isinstance(error, IoError):
             raise
         raise IoError(f"{shown}: cannot be read: {error.strerror or error}") from None
     except ValueError as error:
         raise IoError(f"{shown}: cannot be read: {error}") from None
+    if data is None or (most is not None and len(data) > most):
+        raise IoError(f"{shown}: cannot be read: is larger than {most} bytes")
+    return data
 
 
 def _open_now(path: str, flags: int) -> int:
@@ -141,7 +147,5 @@ def printable(text: str) -> str:
 
 
 def sha256_of(path: str | Path) -> str:
-    try:
-        return hashlib.sha256(Path(path).read_bytes()).hexdigest()
-    except OSError as error:
-        raise IoError(f"{path}: cannot be read: {error.strerror or error}") from None
+    """Of a regular file; raises IoError."""
+    return hashlib.sha256(read_bytes(Path(path), LARGEST_FILE)).hexdigest()

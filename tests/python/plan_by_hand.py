@@ -72,7 +72,7 @@ def plan_by_hand() -> dict[str, Any]:
     return {
         "format": "mmgrasp-plan", "version": 4, "mmgrasp": "0.0.0", "outcome": "solved",
         "scenario": {
-            "name": "by hand", "source": "",
+            "name": "by hand", "source": "scenario.yaml",
             "robot": {"urdf": URDF, "srdf": "", "base": "diff_drive", "base_limits": {}, "meshes": []},
             "arm": {"joints": ["lift", "turn"], "tip_link": "tcp", "velocity_limits": [0.2, 1.0], "acceleration_limits": [1, 4]},
             "gripper": {"tool_link": "tcp", "approach": [1, 0, 0], "closing": [0, 1, 0], "max_opening": 0.1, "finger_depth": 0.03,
@@ -99,7 +99,6 @@ def plan_by_hand() -> dict[str, Any]:
                   {"poses": [[1.0, 1.0, 0.0], [1.0, 1.0, -0.4373], [2.5, 0.3, -0.4373], [2.5, 0.3, 0.0]], "length": 1.655,
                    "turning": 0.875, "duration": 5.0}],
         "picks": picks, "robustness_rate": 1.0, "obstructions": [],
-        "timings": [{"stage": "regions", "seconds": 1.5}, {"stage": "picks", "seconds": 0.5}],
         "premises": {"headings": {"A": [0.0], "B & C": [0.0]}, "shared_headings": True, "positioning_uncertainty": 0.1, "cell": 0.1, "max_distance": 0.0,
                      "grasps": 2, "ik_seeds": 0, "database": {}, "search_finished": True},
     }  # fmt: skip

@@ -29,7 +29,6 @@ HARMLESS: Harmless = {
     "options.seed": ("any", "another seed is another search, and any answer is checked"),
     "options.threads": ("any", "plans do not depend on it"),
     "reach.threads": ("any", "databases do not depend on it"),
-    "allowed_collisions": ("doubled", "a pair said twice"),
     "allowed_collisions[]": ("reordered", "a pair has no order"),
     "allowed_collisions[][]": ("swapped", "a pair has no order"),
 }
@@ -84,6 +83,7 @@ def full_scenario(small: dict[str, Any]) -> dict[str, Any]:
     scenario["gripper"].update(closing_speed=0.12, clearance=0.012)
     scenario["place_region"]["drop_height"] = 0.04
     scenario["floor"] = -0.01
+    scenario["arrival_covariance"] = [[4e-4, 1e-5, 0.0], [1e-5, 4e-4, 0.0], [0.0, 0.0, 3e-4]]
     scenario["allowed_collisions"] = [["lamp", "pillar"]]
     scenario["padding"] = {"links": 0.001, "objects": 0.002, "by_name": {"pillar": 0.003}}
     assert OPTIONS.keys() | {"positioning_uncertainty"} == _core._supply_option_table().keys()

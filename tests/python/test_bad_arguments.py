@@ -186,6 +186,17 @@ def test_bad_arrays_are_refused_by_name(argument: Argument) -> None:
     assert not accepted
 
 
+def test_what_cannot_fit_is_refused_before_it_is_copied() -> None:
+    """A view of a billion numbers takes eight bytes; a copy of it all the memory there is."""
+    huge = np.broadcast_to(np.zeros(1), (10**12,))
+    rows = np.broadcast_to(np.zeros(1), (10**6, 10**6))
+    for call, name in ((lambda: ARM.fk(huge), "q"), (lambda: ARM.fk_batch(rows), "Q"), (lambda: mg.Box(huge), "size")):
+        with pytest.raises(mg.InvalidInput, match=f"{name} has shape .10000"):
+            call()
+    with pytest.raises(mg.InvalidInput, match=r"has shape .1000000, 1000000.: must be .4, 4."):
+        mg.World().add_box("b", [1, 1, 1], rows)
+
+
 PURE = [
     "JointGroup.fk",
     "JointGroup.fk_batch",

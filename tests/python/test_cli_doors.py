@@ -130,6 +130,29 @@ def test_streams_that_only_know_ascii(tmp_path: Path) -> None:
     assert "\\xfc" in done.stdout + done.stderr
 
 
+def test_control_characters_of_a_file_do_not_reach_the_terminal(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    urdf, srdf = tmp_path / "r.urdf", tmp_path / "r.srdf"
+    urdf.write_text(Path(FETCH).read_text().replace('ixx="0.00265"', 'ixx="&#27;[31m"'))
+    srdf.write_text('<robot name="&#27;[2J"><group name="&#27;[31m"><joint name="shoulder_pan_joint"/></group></robot>')
+    assert main(["check", str(urdf), "--srdf", str(srdf)]) == 0
+    printed = capfd.readouterr()
+    assert "\x1b" not in printed.out + printed.err
+    assert "\\x1b[2J" in printed.out
+
+
+def test_a_profile_whose_hand_has_no_such_link(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    profile = tmp_path / "p.yaml"
+    source = ASSETS / "robots" / "kr6like" / "kr6like.yaml"
+    content = yaml.safe_load(source.read_text())
+    content["robot"]["tool_link"] = "gripper"
+    profile.write_text(yaml.safe_dump(content))
+    assert main(["grasp", str(tmp_path), "--gripper", str(profile)]) == 2
+    message = capfd.readouterr().err
+    assert "p.yaml:" in message and "robot.tool_link = 'gripper': the robot has no such link" in message
+
+
 def test_a_reader_that_goes_away() -> None:
     done = run(["check", FETCH], "| true")
     assert "Traceback" not in done.stderr

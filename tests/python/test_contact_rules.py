@@ -190,6 +190,7 @@ def test_a_scenario_on_a_floor(small: dict[str, Any], write: Callable[..., Path]
     [
         ("allowed_collisions", [["left_whel_link", "slab"]], r"scenario.yaml:\d+: allowed_collisions\[0\]\[0\] = 'left_whel_link'.*did you mean left_wheel_link"),
         ("allowed_collisions", [["left_wheel_link"]], r"allowed_collisions\[0\] = .*must be a pair of names"),
+        ("allowed_collisions", [["left_wheel_link", "slab"], ["slab", "left_wheel_link"]], r"allowed_collisions\[1\] = .*listed twice"),
         ("allowed_collisions", ["left_wheel_link"], "must be a list"),
         ("allowed_collisions", {"a": "b"}, "must be a list"),
         ("padding", -0.1, r"scenario.yaml:\d+: padding = -0.1: must be >= 0"),

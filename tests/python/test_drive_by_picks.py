@@ -15,6 +15,7 @@ import pytest
 import mmgrasp as mg
 from conftest import ASSETS
 from mmgrasp import sim
+from mmgrasp.part_supply.consistency import check_consistency
 from mmgrasp.part_supply.plan_file import plan_schema
 from mmgrasp.viz.report import report_html
 from mmgrasp.viz.timeline import Timeline
@@ -117,6 +118,19 @@ def test_what_is_wrong_in_passing_is_found(content: dict[str, Any]) -> None:
     plan, motion = spoiled(content)
     motion["pick"] = 1
     assert "drive-by-pick" in codes(plan)
+    plan, motion = spoiled(content)
+    motion["opening"] += 0.001
+    assert [f.where for f in check_consistency(plan)] == ["drive_by.motions[0].opening"]
+    plan, motion = spoiled(content)
+    plan["drive_by"]["motions"].append(motion)
+    assert [f.where for f in check_consistency(plan)] == ["drive_by.motions"]
+
+
+def test_a_leg_on_which_the_base_stands_is_found(content: dict[str, Any]) -> None:
+    plan, _ = spoiled(content)
+    assert check_consistency(plan) == []
+    plan["route"][0]["poses"].insert(1, plan["route"][0]["poses"][0])
+    assert [f.where for f in check_consistency(plan)] == ["route[0].poses"]
 
 
 def test_the_whole_round_is_one_motion(passing: mg.part_supply.DriveByPlan) -> None:

@@ -78,14 +78,29 @@ def test_bad_input_is_refused_by_name(scanned: Path, tmp_path: Path, capsys: pyt
     assert "no objects.json" in refused(str(tmp_path), "--gripper", GRIPPER)
     bad = tmp_path / "objects.json"
     content = json.loads((scanned / "objects.json").read_text())
+    corners = {"lower": [0, 0, 0], "upper": [0.1, 0.1, 0.1]}
     for change, words in (
-        ("{", "is no list of objects"),
+        ("{", "is no valid JSON"),
+        ("[]", "is no list of objects"),
+        (json.dumps({**content, "format": "mmgrasp-plan"}), "is no list of objects"),
         (json.dumps({**content, "version": 9}), "version 1"),
         (json.dumps({**content, "objects": []}), "lists no objects"),
-        (json.dumps({**content, "objects": [{"name": "cup"}]}), "is no list of objects"),
+        (json.dumps({**content, "objects": [{"name": "cup"}]}), "objects[0]: bounds is missing"),
+        (json.dumps({**content, "objects": [{"name": 3, "bounds": corners}]}), "objects[0].name = 3"),
+        (
+            json.dumps({**content, "objects": [{"name": "cup", "bounds": {**corners, "upper": [0, 0, "1"]}}]}),
+            "upper[2] = '1'",
+        ),
+        (
+            json.dumps({**content, "objects": [{"name": "cup", "bounds": {**corners, "upper": [0, 0, 0]}}]}),
+            "below upper",
+        ),
         (json.dumps({**content, "plane": {**content["plane"], "normal": [1.0, 0.0, 0.0]}}), "tilted by 90 degrees"),
+        (json.dumps({**content, "plane": {**content["plane"], "normal": [0.0, 1.0]}}), "plane.normal"),
+        (json.dumps({**content, "plane": {**content["plane"], "offset": "0"}}), "plane.offset = '0'"),
     ):
         bad.write_text(change)
-        assert words in refused(str(tmp_path), "--gripper", GRIPPER), words
+        message = refused(str(tmp_path), "--gripper", GRIPPER)
+        assert words in message and str(bad) in message, words
     bad.write_text(json.dumps(content))
     assert "map.sdf" in refused(str(tmp_path), "--gripper", GRIPPER)

@@ -6,6 +6,8 @@ import json
 import os
 import signal
 import stat
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -188,6 +190,20 @@ def test_what_cannot_be_read_as_text(tmp_path: Path, what: str) -> None:
     path = {"device": Path("/dev/zero"), "nul": tmp_path / "a\0"}.get(what, tmp_path / what)
     with pytest.raises(mg.IoError):
         read_text(path, 10)
+
+
+def test_reading_takes_the_memory_of_the_file_not_that_of_its_limit(tmp_path: Path) -> None:
+    (tmp_path / "small").write_text("12")
+    code = """
+import resource, sys
+from pathlib import Path
+from mmgrasp._files import read_bytes
+now = int(open("/proc/self/statm").read().split()[0]) * resource.getpagesize()
+resource.setrlimit(resource.RLIMIT_AS, (now + 50_000_000,) * 2)
+print(read_bytes(Path(sys.argv[1]), 1_000_000_000))
+"""
+    done = subprocess.run([sys.executable, "-c", code, str(tmp_path / "small")], capture_output=True, text=True)
+    assert (done.stdout, done.stderr) == ("b'12'\n", "")
 
 
 def test_what_would_move_a_terminal_is_written_as_escapes() -> None:

@@ -125,6 +125,11 @@ def spoil_progress(out: Path, **changes: Any) -> None:
     (out / "progress.json").write_text(json.dumps(content | changes))
 
 
+def spoil_sensor(out: Path) -> None:
+    (frame,) = json.loads((out / "progress.json").read_text())["frames"]
+    spoil_progress(out, frames=[frame | {"sensor": "other"}])
+
+
 def other_map(out: Path) -> None:
     direct_map(shots(2, 1000.0), 1000.0).save(out / "map.sdf")
 
@@ -145,6 +150,7 @@ SPOILED = {
     ),
     "something else": (lambda out: spoil_progress(out, format="x"), "is no progress of mmgrasp scan"),
     "frames that are none": (lambda out: spoil_progress(out, frames=[{"name": "a"}]), "frames[0]"),
+    "a frame of another sensor": (spoil_sensor, "frames[0].sensor = 'other': is none of its sensors (camera)"),
     "a map elsewhere": (lambda out: spoil_progress(out, map="../map.sdf"), "must be a file in the same folder"),
     "no JSON": (lambda out: (out / "progress.json").write_text("{"), "is no valid JSON"),
 }

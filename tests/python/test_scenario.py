@@ -114,6 +114,7 @@ BAD = [
     ("options.grid_resolution", "fine", ["options.grid_resolution", "number"]),
     ("options.seed", 1.5, ["options.seed", "1.5", "whole number"]),
     ("reach.samples", 0, ["reach", "samples", "0"]),
+    ("reach.samples", 100, ["reach.samples = 100: must be at least 10000"]),
     ("reach.sample", 10, ["reach.sample", "did you mean samples?"]),
     ("options.lift_height", 0.001, ["options.lift_height", "0.001", "[0.01, 10] m"]),
     ("options.route_resolution", 1e-4, ["options.route_resolution", "[0.001, 100] m"]),

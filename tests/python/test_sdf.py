@@ -119,3 +119,8 @@ def test_rays_meet_a_table_at_any_height_of_the_grid() -> None:
         hits = sdf.cast_rays(origins, directions)
         assert hits.hit.mean() == 1.0, height
         np.testing.assert_allclose(hits.point[:, 2], height, atol=2e-4)
+
+
+def test_an_empty_map_has_arrays_of_the_usual_columns() -> None:
+    mesh, sigmas = mg.ProbabilisticSdf().mesh()
+    assert (mesh.vertices.shape, mesh.triangles.shape, sigmas.shape) == ((0, 3), (0, 3), (0,))

@@ -83,7 +83,12 @@ def _add_arrive(commands: Commands) -> None:
         "--stop", type=_count(1, 1_000_000, "stops"), required=True, metavar="K", help="the plan's K-th stop, from 1"
     )
     parser.add_argument(
-        "--pose", type=float, nargs=3, required=True, metavar=("X", "Y", "THETA"), help="measured base pose [m, m, rad]"
+        "--pose",
+        type=_coordinate,
+        nargs=3,
+        required=True,
+        metavar=("X", "Y", "THETA"),
+        help="measured base pose [m, m, rad]",
     )
     parser.add_argument("--picked", nargs="+", default=[], metavar="PART", help="parts that are gone already")
     parser.add_argument("--scenario", type=_path, metavar="FILE", help="the plan's scenario, where it has moved")
@@ -187,7 +192,7 @@ def _add_grasp(commands: Commands) -> None:
 
 def _add_pipe(commands: Commands) -> None:
     parser = commands.add_parser("pipe", help="find the grasp that carries a pipe along a path and bends it least")
-    parser.add_argument("problem", type=str, help="problem file (YAML), or the name of a shipped one (pipe1)")
+    parser.add_argument("problem", type=_source, help="problem file (YAML), or the name of a shipped one (pipe1)")
     parser.add_argument("-o", "--out", type=_path, required=True, metavar="DIR", help="folder to write into")
     parser.add_argument(
         "--algorithm",
@@ -220,7 +225,7 @@ def _add_segment(commands: Commands) -> None:
 
 def _add_grippers(commands: Commands) -> None:
     parser = commands.add_parser("grippers", help="find the least set of grippers for an assembly, from its meshes")
-    parser.add_argument("assembly", type=str, help="assembly file (YAML), or the name of a shipped one (pulley)")
+    parser.add_argument("assembly", type=_source, help="assembly file (YAML), or the name of a shipped one (pulley)")
     parser.add_argument("-o", "--out", type=_path, required=True, metavar="DIR", help="folder to write into")
     parser.add_argument("--no-pictures", action="store_true", help="leave the pictures out of the report")
     parser.add_argument("--json", action="store_true", help="print the result as JSON")
@@ -295,6 +300,11 @@ def _path(text: str) -> Path:
     return Path(text)
 
 
+def _source(text: str) -> str:
+    """Of a file, or a name of a shipped one."""
+    return str(_path(text))
+
+
 def _count(least: int, most: int, unit: str) -> Callable[[str], int]:
     """A whole number in plain digits, with its bounds."""
 
@@ -341,10 +351,18 @@ def _direction(text: str) -> list[float]:
     return values
 
 
+def _coordinate(text: str) -> float:
+    value = _number(text)
+    if not abs(value) <= 1e6:
+        raise argparse.ArgumentTypeError(f"{text!r}: must be a number from -1000000 to 1000000")
+    return value
+
+
 def _number(text: str) -> float:
     """NaN for what is none."""
+    plain = text.isascii() and "_" not in text and text == text.strip()
     try:
-        return float(text) if text.isascii() and "_" not in text else math.nan
+        return float(text) if plain else math.nan
     except ValueError:
         return math.nan
 

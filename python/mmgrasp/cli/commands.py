@@ -63,7 +63,7 @@ def run_plan(arguments: argparse.Namespace, console: Console) -> int:
             with folder.filled(added=True) as draft:
                 passing.save(draft)
                 if not arguments.no_pictures:
-                    write_file(draft / "report.html", report_page(passing.plan_to_dict(), folder.path))
+                    write_file(draft / "report.html", report_page(passing.plan_to_dict(), folder.path, plan.timings))
     if plan.outcome != Outcome.solved:
         console.print(f"no plan: {plan.outcome.name.replace('_', ' ')}", style="bold red", markup=False)
         for obstruction in plan.obstructions:
@@ -80,6 +80,8 @@ def write_outputs(plan: ScenarioPlan, out: Path, report: Callable[[str, float], 
     """Writes everything into the folder and returns the name of the page to look at."""
     report("writing", 0.0)
     path = plan.save(out / "plan.json")
+    rows = [{"stage": stage, "seconds": seconds} for stage, seconds in plan.timings]
+    write_file(out / "timings.json", json.dumps(rows, indent=1) + "\n")
     plan.save_trajectories(out / "trajectories")
     if pictures:
         from ..viz.pictures import write_pictures
@@ -89,16 +91,16 @@ def write_outputs(plan: ScenarioPlan, out: Path, report: Callable[[str, float], 
         write_pictures(content, out)
         report("writing", 0.9)
         path = out / "report.html"
-        write_file(path, report_page(content, out))
+        write_file(path, report_page(content, out, plan.timings))
     report("writing", 1.0)
     return path.name
 
 
-def report_page(content: dict[str, Any], pictures: Path) -> str:
-    """The report of a plan, with the pictures of a folder."""
+def report_page(content: dict[str, Any], pictures: Path, timings: Sequence[tuple[str, float]]) -> str:
+    """The report of a plan, with the pictures of a folder and how long each stage took [s]."""
     from ..viz.report import report_html
 
-    return str(report_html(content, pictures))
+    return str(report_html(content, pictures, timings))
 
 
 def run_verify(arguments: argparse.Namespace, console: Console) -> int:
@@ -131,7 +133,7 @@ def run_check(arguments: argparse.Namespace, console: Console) -> int:
         )
     if arguments.write_srdf is not None:
         write_file(arguments.write_srdf, found.srdf())
-    print(json.dumps(found.to_dict(), indent=1, default=str) if arguments.json else describe(found))
+    print(json.dumps(found.to_dict(), indent=1, default=str) if arguments.json else printable(describe(found)))
     return DONE if found.ok else FAULTY
 
 
@@ -179,7 +181,7 @@ def run_bench(arguments: argparse.Namespace, console: Console) -> int:
     else:
         console.print(bench_table(rows))
         for fault in (fault for row in rows for fault in row["faults"]):
-            console.print(f"- {fault}", markup=False, soft_wrap=True)
+            console.print(printable(f"- {fault}"), markup=False, soft_wrap=True)
     return DONE if holds(results) else FAULTY
 
 
@@ -264,6 +266,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(
             "mmgrasp: out of memory: use a coarser grid, larger voxels, fewer samples or fewer parts", file=sys.stderr
         )
+        return BAD_INPUT
+    except ImportError as error:  # a library that is broken, or that there is no memory for
+        print(f"mmgrasp: a part of the installation cannot be loaded: {printable(str(error))}", file=sys.stderr)
         return BAD_INPUT
     except KeyboardInterrupt:
         print("mmgrasp: interrupted", file=sys.stderr)

@@ -13,16 +13,16 @@ from rich.table import Table
 
 from .. import _core
 from .._core import InvalidInput, IoError, Outcome
-from .._files import printable, read_text, write_file
+from .._files import check_file, printable, write_file
+from ..documents.reading import Node, read_json
 from ..scan.objects import FORMAT as OBJECTS_FORMAT
 from ..scan.objects import VERSION as OBJECTS_VERSION
 from ..scan.objects import pose_to_dict
 from ..scenario import read_gripper
 from .console import Reporter
+from .exit_codes import DONE, NOT_FOUND
 
-FOUND, NOTHING_FOUND = 0, 1
 FORMAT, VERSION = "mmgrasp-grasps", 1
-_LARGEST = 100_000_000  # bytes of objects.json
 _LEVEL = 0.17  # the table may be that far from level [rad]
 _ROOM = 0.01  # around an object's points, within which its surface is taken from the map [m]
 _SHARES = ("angle", "placement", "centring", "certainty")
@@ -30,6 +30,8 @@ _SHARES = ("angle", "placement", "centring", "certainty")
 
 def run_grasp(arguments: argparse.Namespace, console: Console) -> int:
     """`mmgrasp grasp`: ranked grasps of the objects in a map; the exit code."""
+    if arguments.out is not None:
+        check_file(arguments.out)
     hand = read_gripper(arguments.gripper)
     objects, plane = _read_objects(arguments.map)
     chosen = _chosen(objects, arguments.object, arguments.map)
@@ -47,7 +49,7 @@ def run_grasp(arguments: argparse.Namespace, console: Console) -> int:
         print(json.dumps(content, indent=1, allow_nan=False))
     else:
         _print(rows, arguments.out, console)
-    return FOUND if any(row["grasps"] for row in rows) else NOTHING_FOUND
+    return DONE if any(row["grasps"] for row in rows) else NOT_FOUND
 
 
 def _read_objects(folder: Path) -> tuple[list[dict[str, Any]], dict[str, Any]]:
@@ -56,25 +58,33 @@ def _read_objects(folder: Path) -> tuple[list[dict[str, Any]], dict[str, Any]]:
         raise IoError(
             f"{printable(str(folder))}: holds no objects.json: not a folder that mmgrasp scan wrote to its end"
         )
-    try:
-        content = json.loads(read_text(path, _LARGEST))
-        known = content["format"] == OBJECTS_FORMAT and content["version"] == OBJECTS_VERSION
-        objects, plane = list(content["objects"]), content["plane"]
-        for thing in objects:
-            np.array([thing["bounds"]["lower"], thing["bounds"]["upper"]], dtype=float).reshape(2, 3)
-    except (ValueError, KeyError, TypeError) as error:
-        raise IoError(f"{printable(str(path))}: is no list of objects of mmgrasp scan: {error}") from None
-    if not known:
-        raise IoError(f"{printable(str(path))}: must have the format {OBJECTS_FORMAT}, version {OBJECTS_VERSION}")
-    if not objects or plane is None:
-        raise InvalidInput(f"{printable(str(path))}: lists no objects: there is nothing to grasp")
-    tilt = float(np.arccos(np.clip(plane["normal"][2], -1, 1)))
+    root = read_json(path).root
+    if "format" not in root or root["format"].raw != OBJECTS_FORMAT:
+        raise InvalidInput(f"{path}: is no list of objects of mmgrasp scan: its format is not {OBJECTS_FORMAT}")
+    root.read_version(OBJECTS_VERSION)
+    root.mapping("format version plane objects", "up")
+    objects = [_read_object(node) for node in root["objects"].elements()]
+    if not objects or root["plane"].raw is None:
+        raise InvalidInput(f"{path}: lists no objects: there is nothing to grasp")
+    plane = root["plane"].mapping("normal offset", "points")
+    normal = plane["normal"].numbers(3)
+    if abs(np.linalg.norm(normal) - 1) > 1e-6:
+        plane["normal"].fail("must have length 1")
+    tilt = float(np.arccos(np.clip(normal[2], -1, 1)))
     if tilt > _LEVEL:
-        raise InvalidInput(
-            f"{printable(str(path))}: the supporting plane is tilted by {np.degrees(tilt):.0f} degrees against the world's z, at most "
+        plane["normal"].fail(
+            f"the supporting plane is tilted by {np.degrees(tilt):.0f} degrees against the world's z, at most "
             f"{np.degrees(_LEVEL):.0f} will do: give the frames' poses in a world whose z is up"
         )
-    return objects, plane
+    return objects, {"normal": normal, "offset": plane["offset"].number()}
+
+
+def _read_object(node: Node) -> dict[str, Any]:
+    bounds = node.mapping("name bounds", "pose size fill points sigma")["bounds"].mapping("lower upper")
+    corners = np.array([bounds[key].numbers(3) for key in ("lower", "upper")])
+    if not (corners[0] < corners[1]).all():
+        bounds.fail("lower must be below upper")
+    return {"name": node["name"].label(), "bounds": corners}
 
 
 def _chosen(objects: list[dict[str, Any]], name: str | None, folder: Path) -> list[dict[str, Any]]:
@@ -82,7 +92,7 @@ def _chosen(objects: list[dict[str, Any]], name: str | None, folder: Path) -> li
         return objects
     found = [thing for thing in objects if thing["name"] == name]
     if not found:
-        names = ", ".join(str(thing["name"]) for thing in objects[:8])
+        names = ", ".join(thing["name"] for thing in objects[:8])
         raise InvalidInput(f"--object {name}: is no object of {printable(str(folder))}; it has {names}")
     return found
 
@@ -94,7 +104,7 @@ def _grasps_of(
     hand: _core.Hand,
     arguments: argparse.Namespace,
 ) -> dict[str, Any]:
-    box = np.array([thing["bounds"]["lower"], thing["bounds"]["upper"]], dtype=float)
+    box = thing["bounds"].copy()
     middle, normal = box.mean(axis=0), np.array(plane["normal"])
     table = float((plane["offset"] - normal[:2] @ middle[:2]) / normal[2])
     box += [[-_ROOM], [_ROOM]]

@@ -18,7 +18,7 @@ from .._files import check_folder, read_text, write_file
 
 LIST = "files.json"
 PLAN_FILES = (
-    *("plan.json", "drive_by.json", "report.html", LIST, "trajectories"),
+    *("plan.json", "timings.json", "drive_by.json", "report.html", LIST, "trajectories"),
     *("topview.png", "regions.png", "stop_*.png", "pick_*.png"),
 )
 _DRAFT = ".writing."

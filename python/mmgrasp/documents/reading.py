@@ -114,15 +114,19 @@ class Node:
                 self.child(key).refuse_key(known)
         for key in needed:
             if key not in self.raw:
-                raise InvalidInput(f"{self.place}: {self.name}: {key} is missing")
+                self.lacks(key)
         return self
+
+    def lacks(self, key: str) -> NoReturn:
+        """Raises InvalidInput for a key that is missing."""
+        raise InvalidInput(printable(f"{self.place}: {self.name}: {key} is missing"))
 
     def refuse_key(self, known: list[str]) -> NoReturn:
         """Raises InvalidInput for an unknown key, with its new name or the nearest known one."""
         key = str(self.path[-1])
         new = RENAMED.get(key)
         hint = f"; it is called {new} now" if new in known else near_miss(key, known)
-        raise InvalidInput(f"{self.place}: {self.name}: unknown key{hint}")
+        raise InvalidInput(printable(f"{self.place}: {self.name}: unknown key{hint}"))
 
     def read_version(self, current: int, renamed: Mapping[str, str] | None = None) -> None:
         """Of a file: its key `version` must be the current one; of keys of older ones says what they are called now."""
@@ -142,7 +146,7 @@ class Node:
         if not isinstance(self.raw, Mapping):
             self.fail("must be a mapping")
         if key not in self.raw:
-            raise InvalidInput(f"{self.place}: {self.name}: {key} is missing")
+            self.lacks(key)
         return self.child(key)
 
     def items(self) -> Iterator[tuple[str, Node]]:
@@ -267,36 +271,36 @@ def _keys(raw: Any) -> set[str]:
 
 def read_yaml(path: Path) -> Document:
     """Parses a YAML file; syntax errors name the line."""
-    raw, lines = parse_yaml(read_text(path, LARGEST_SCENARIO), str(path))
+    raw, lines = parse_yaml(read_text(path, LARGEST_SCENARIO), printable(str(path)))
     return Document(str(path), raw, lines)
 
 
 def read_json(path: Path) -> Document:
     """Parses a JSON file; syntax errors name the line. Keys given twice, NaN and infinity are refused."""
-    text = read_text(path, LARGEST_PLAN)
+    text, shown = read_text(path, LARGEST_PLAN), printable(str(path))
 
     def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
         out = dict(pairs)
         if len(out) < len(pairs):
             keys = [key for key, _ in pairs]
             twice = next(key for key in out if keys.count(key) > 1)
-            raise InvalidInput(f"{path}: the key {twice!r} is given twice")
+            raise InvalidInput(f"{shown}: the key {twice!r} is given twice")
         return out
 
     def no_number(word: str) -> NoReturn:
-        raise InvalidInput(f"{path}: {word} is no number in JSON")
+        raise InvalidInput(f"{shown}: {word} is no number in JSON")
 
     def integer(digits: str) -> int:
         if len(digits) > 300:
-            raise InvalidInput(f"{path}: a number has {len(digits)} digits")
+            raise InvalidInput(f"{shown}: a number has {len(digits)} digits")
         return int(digits)
 
     try:
         raw = json.loads(text, object_pairs_hook=once, parse_constant=no_number, parse_int=integer)
     except json.JSONDecodeError as error:
-        raise InvalidInput(f"{path}:{error.lineno}: is no valid JSON: {error.msg}") from None
+        raise InvalidInput(f"{shown}:{error.lineno}: is no valid JSON: {error.msg}") from None
     except RecursionError:
-        raise InvalidInput(f"{path}: is nested too deeply") from None
+        raise InvalidInput(f"{shown}: is nested too deeply") from None
     check_depth(raw, str(path))
     return Document(str(path), raw, {})
 
@@ -314,4 +318,4 @@ def check_depth(raw: Any, source: str) -> None:
         ]
         if not level:
             return
-    raise InvalidInput(f"{source}: is nested more than {DEEPEST} deep")
+    raise InvalidInput(f"{printable(source)}: is nested more than {DEEPEST} deep")

@@ -11,6 +11,7 @@ from typing import Any
 import yaml
 
 from .._core import InvalidInput
+from .._files import printable
 
 Key = str | int
 
@@ -173,7 +174,7 @@ def _plain(tree: _Tree, path: tuple[Key, ...], lines: dict[tuple[Key, ...], int]
         if not isinstance(key, str):
             raise InvalidInput(f"{source}:{key_tree.line}: a key must be a name, not {key!r}")
         if key in out:
-            raise InvalidInput(f"{source}:{key_tree.line}: {key}: is given twice")
+            raise InvalidInput(f"{source}:{key_tree.line}: {printable(key)}: is given twice")
         lines[(*path, key)] = key_tree.line
         out[key] = _plain(child, (*path, key), lines, source, depth + 1)
     return out

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -19,7 +20,7 @@ _CLOSE = 1e-6  # [m], [rad]
 
 def check_consistency(plan: Plan) -> list[checks.Fault]:
     """Faults of a solved plan whose form is that of the schema."""
-    rules = (_hand, _options, _trays, _regions, _intersections, _stops, _answer, _premises)
+    rules = (_hand, _options, _trays, _regions, _intersections, _stops, _route, _in_passing, _answer, _premises)
     return [checks.Fault("wrong-values", where, message) for rule in rules for where, message in rule(plan)]
 
 
@@ -37,8 +38,8 @@ def _options(plan: Plan) -> Found:
     scenario, options = plan["scenario"], plan["scenario"]["options"]
     if not scenario["obstacles"] and not scenario["trays"]:
         return
-    known = set(_core._supply_option_table())
-    for key in known ^ set(options):
+    known = _core._supply_option_table().keys() - {"threads"}
+    for key in known ^ options.keys():
         yield f"scenario.options.{key}", "is missing" if key in known else "is no option"
     pairs = (
         ("grid_resolution", plan["grid"]["resolution"]),
@@ -139,6 +140,23 @@ def _stops(plan: Plan) -> Found:
         )
         if said["trays"] != stop["trays"] or not same_heading:
             yield f"stops[{i}].intersection", f"intersection {index} has other trays or another heading"
+
+
+def _route(plan: Plan) -> Found:
+    for i, leg in enumerate(plan["route"]):
+        poses = leg["poses"]
+        if len(poses) > 2 and any(_same(a, b) for a, b in pairwise(poses)):
+            yield f"route[{i}].poses", "the base stands still between two poses"
+
+
+def _in_passing(plan: Plan) -> Found:
+    motions = plan.get("drive_by", {}).get("motions", [])
+    if any(a["pick"] >= b["pick"] for a, b in pairwise(motions)):
+        yield "drive_by.motions", "must be in the order of their picks, each once"
+    for i, motion in enumerate(motions):
+        pick = plan["picks"][motion["pick"]] if motion["pick"] < len(plan["picks"]) else None
+        if pick and pick["motions"] and abs(motion["opening"] - pick["motions"][0]["opening"]) > _CLOSE:
+            yield f"drive_by.motions[{i}].opening", f"must be {pick['motions'][0]['opening']:g} m, as in the pick's own"
 
 
 def _turn(angle: float) -> bool:

@@ -8,7 +8,7 @@ import numpy as np
 
 from .._core import RobotSource
 from .._core import verify as checks
-from .._files import sha256_of
+from .._files import printable, sha256_of
 from ..documents.reading import Node
 from ..scenario.shapes import shape_from_node
 
@@ -24,7 +24,9 @@ def plan_to_check(root: Node) -> checks.PlanToCheck:
     base = robot["base"].choice("diff_drive", "omni")
     planned = RobotSource(base, base_limits=limits, srdf=robot["srdf"].string())
     files = {mesh["file"].raw: mesh["file"].raw for mesh in robot["meshes"].elements()}
-    planned.add_urdf(robot["urdf"].string(), origin=f"{root.document.source}: scenario.robot.urdf", mesh_files=files)
+    planned.add_urdf(
+        robot["urdf"].string(), origin=f"{printable(root.document.source)}: scenario.robot.urdf", mesh_files=files
+    )
     if "urdfs" in robot:
         plan = checks.PlanToCheck(_read_source(robot, RobotSource(base, base_limits=limits, srdf=robot["srdf"].raw)))
         plan.planned_robot = planned

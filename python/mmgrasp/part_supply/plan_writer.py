@@ -17,7 +17,7 @@ from .plan_file import VERSION
 from .premises import premises
 
 
-def plan_to_dict(scenario: Scenario, plan: PartSupplyPlan, timings: list[tuple[str, float]]) -> dict[str, Any]:
+def plan_to_dict(scenario: Scenario, plan: PartSupplyPlan) -> dict[str, Any]:
     """The whole content of plan.json."""
     names = [scenario.trays[tray].tray.name for tray in plan.region_trays]
     content = {
@@ -54,7 +54,6 @@ def plan_to_dict(scenario: Scenario, plan: PartSupplyPlan, timings: list[tuple[s
         "picks": [pick_to_dict(pick, scenario) for pick in plan.picks],
         "robustness_rate": plan.robustness_rate,
         "obstructions": [o.to_dict() for o in plan.obstructions],
-        "timings": [{"stage": stage, "seconds": seconds} for stage, seconds in timings],
     }
     return content | {"premises": premises(content)}
 
@@ -122,7 +121,7 @@ def scenario_to_dict(scenario: Scenario) -> dict[str, Any]:
         ],
         "parts": [_part(part, t) for t in scenario.trays for part in t.tray.parts],
         **({"scans": scans} if (scans := [t.scan.to_dict(t.tray.name) for t in scenario.trays if t.scan]) else {}),
-        "options": dict(scenario.problem().options),
+        "options": {key: value for key, value in scenario.problem().options.items() if key != "threads"},
         **scenario.rules.to_dict(),
         "reach": {key: scenario.reach.get(key, default) for key, (default, _) in _reach_options().items()},
     }

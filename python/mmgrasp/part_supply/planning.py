@@ -73,8 +73,8 @@ class ScenarioPlan:
         )
 
     def to_dict(self) -> dict[str, Any]:
-        """The content of plan.json (docs/plan_format.md)."""
-        return plan_to_dict(self.scenario, self.plan, self.timings)
+        """The content of plan.json (docs/plan_format.md): the same from run to run, at any number of threads."""
+        return plan_to_dict(self.scenario, self.plan)
 
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Writes plan.json."""

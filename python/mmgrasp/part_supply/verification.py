@@ -122,7 +122,7 @@ def differences(was: Any, now: Any, path: str = "", limit: int = 20) -> list[tup
     return out
 
 
-IGNORED = {".name", ".source", ".options.threads", ".options.seed"}
+IGNORED = {".name", ".source", ".options.seed"}
 
 
 def _walk(was: Any, now: Any, path: str) -> Iterator[tuple[str, Any, Any]]:

@@ -28,12 +28,14 @@ from .._core import (
     World,
     pose,
 )
+from .._files import read_text
 from .._options import CheckerOptions
 from ..documents.reading import bad_yaml
 
 MBM_SETS = ("bookshelf_small", "bookshelf_tall", "bookshelf_thin", "box", "cage", "table_pick", "table_under_pick")
 """The sets of problems that MotionBenchMaker makes for an arm."""
 
+LARGEST_SCENE = 100_000_000  # [bytes]
 _LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 
@@ -150,11 +152,13 @@ class _File:
     def __init__(self, path: str | Path) -> None:
         self.path = path
         try:
-            self.root = yaml.load(Path(path).read_text(), Loader=_LOADER)
-        except (OSError, UnicodeDecodeError) as error:
-            raise IoError(f"{path}: {error}") from error
+            self.root = yaml.load(read_text(Path(path), LARGEST_SCENE), Loader=_LOADER)
         except yaml.YAMLError as error:
             raise bad_yaml(path, error) from None
+        except (ValueError, KeyError, AttributeError, RecursionError) as error:  # of tags and dates
+            if isinstance(error, IoError):
+                raise
+            raise InvalidInput(f"{path}: is no valid YAML: {error}") from None
 
     def of(self, value: Any, *keys: str) -> Any:
         for key in keys:

@@ -11,7 +11,7 @@ from typing import Any, Unpack
 
 import numpy as np
 
-from .._core import IoError, Robot, plan_motion
+from .._core import IoError, Robot, plan_motion, planner_names
 from .._core.verify import CheckedBody, check_path
 from .._options import MotionOptions
 from ..documents.reading import check_name
@@ -114,6 +114,8 @@ def run_motion_bench(
         check_name("set", name, MBM_SETS)
     for name in robots:
         check_name("robot", name, ROBOTS)
+    if "planner" in options:
+        check_name("planner", options["planner"], planner_names())
     options = {"time_limit": 10.0, "max_iterations": 2**31 - 1, "workspace_step": 0.005} | options
     results = []
     for done, (robot_name, name) in enumerate(itertools.product(robots, sets)):

@@ -9,7 +9,7 @@ from typing import Any
 
 from .._files import write_file
 from . import ENTRIES
-from .sources import is_stale, sources_hash, stale_results
+from .sources import is_stale, sources_hash, stale_results, stored_result
 
 FOLDER = "reproduction"
 STALE = "Older than the sources it is made from"
@@ -56,7 +56,7 @@ def markdown(result: dict[str, Any], picture: str | None = None) -> str:
     lines += [
         f"Set-up: {setup}.",
         "",
-        f"({kind}seed {result['seed']}, {result['seconds']:g} s in all, {result['date']}, {machine['processor']}, "
+        f"({kind}seed {result['seed']}, {result['seconds']:g} s for this page, {result['date']}, {machine['processor']}, "
         f"{machine['cores']} cores, {machine['system']}, Python {machine['python']}, mmgrasp {machine['mmgrasp']})",
         "",
     ]
@@ -114,7 +114,7 @@ def _other_seeds(folder: Path, name: str) -> list[str]:
     """A line for each result of another seed."""
     lines = []
     for path in sorted(folder.glob(f"{name}-seed-*.json")):
-        result = json.loads(path.read_text())
+        result = stored_result(path)
         broken = [check["what"] for check in result["checks"] if not check["holds"]]
         holding = f"{len(result['checks']) - len(broken)} of {len(result['checks'])} statements hold"
         lines.append(f"Seed {result['seed']}: {holding}{''.join('; not: ' + what for what in broken)}.\n")
@@ -133,7 +133,7 @@ def write_page(out: Path) -> Path:
         if not path.is_file():
             continue
         picture = f"{FOLDER}/{name}.png"
-        result = json.loads(path.read_text())
+        result = stored_result(path)
         section = markdown(result, picture if (out / picture).is_file() else None)
         if is_stale(result, repository):
             head, _, rest = section.partition("\n")

@@ -6,9 +6,11 @@ Chapter 4 of P1 so far. What the library beneath it (collisions, kinematics) giv
 from __future__ import annotations
 
 import hashlib
-import json
 from pathlib import Path
 from typing import Any
+
+from .._core import IoError
+from ..documents.reading import read_json
 
 _TRAJOPT = (
     "cpp/src/trajopt", "cpp/include/mmgrasp/trajopt", "cpp/src/task/drive_by", "cpp/include/mmgrasp/task/drive_by.hpp",
@@ -42,6 +44,15 @@ def sources_hash(name: str, repository: Path) -> str | None:
     return whole.hexdigest()
 
 
+def stored_result(path: Path) -> dict[str, Any]:
+    """A result that `reproduce` wrote; raises IoError for any other file under its name."""
+    content = read_json(path).raw
+    known = isinstance(content, dict) and {"name", "title", "rows", "checks", "seed"} <= content.keys()
+    if not known or not isinstance(content["checks"], list):
+        raise IoError(f"{path}: is no result of mmgrasp reproduce: remove it, or choose another folder")
+    return dict(content)
+
+
 def is_stale(result: dict[str, Any], repository: Path) -> bool:
     """Whether a stored result was made from other sources than those that are there; where none are kept, it is not said."""
     now = sources_hash(result["name"], repository)
@@ -51,4 +62,4 @@ def is_stale(result: dict[str, Any], repository: Path) -> bool:
 def stale_results(folder: Path, repository: Path) -> list[str]:
     """Names of the stored results that are older than their sources, in the order of the table above."""
     stored = {name: folder / f"{name}.json" for name in SOURCES}
-    return [n for n, p in stored.items() if p.is_file() and is_stale(json.loads(p.read_text()), repository)]
+    return [n for n, p in stored.items() if p.is_file() and is_stale(stored_result(p), repository)]

@@ -50,6 +50,9 @@ def read_scan(path: Path) -> Scan:
         [_record(node, SkippedFrame) for node in root["skipped"].elements()],
         {sensor: _sensor(node) for sensor, node in root["sensors"].items()},
     )
+    for record, node in zip(scan.frames, root["frames"].elements(), strict=True):
+        if record.sensor not in scan.sensors:
+            node["sensor"].fail(f"is none of its sensors ({', '.join(scan.sensors)}): {_AGAIN}")
     _check_map(scan, path.parent / name, path)
     return scan
 

@@ -51,7 +51,7 @@ def _read_allowed(root: Node, robot: Robot, known: list[str], objects: list[str]
     bodies = {name: {name} for name in (*robot.links, *objects)}
     for group, links in robot.group_links.items():
         bodies[group] = bodies.get(group, set()) | set(links)
-    pairs = set()
+    pairs, listed = set(), set()
     for node in root["allowed_collisions"].elements():
         names = node.elements()
         if len(names) != 2:
@@ -59,6 +59,9 @@ def _read_allowed(root: Node, robot: Robot, known: list[str], objects: list[str]
         for name in names:
             if name.string() not in known:
                 _unknown(name, name.raw, known)
+        if (pair := frozenset(name.raw for name in names)) in listed:
+            node.fail("is listed twice")
+        listed.add(pair)
         pairs |= {(min(a, b), max(a, b)) for a in bodies[names[0].raw] for b in bodies[names[1].raw]}
     return sorted(pairs)
 

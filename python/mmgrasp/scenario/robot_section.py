@@ -130,7 +130,9 @@ def read_gripper(source: str) -> Hand:
     path = shipped(source) if source.startswith("asset:") else profile_path(source)
     root = read_yaml(path).root
     sections = choose_sections(root, None) if "trays" in root else _profile_sections(root)
-    return _read_gripper(sections.gripper, _compose(sections.robot), sections.robot["tool_link"].string())
+    robot = _compose(sections.robot)
+    _link(robot, sections.robot["tool_link"])
+    return _read_gripper(sections.gripper, robot, sections.robot["tool_link"].string())
 
 
 def read_setup(sections: RobotSections, progress: Progress = None) -> RobotSetup:

@@ -27,6 +27,7 @@ TOP_OPTIONAL = (
     "arrival_covariance part_types gripper place_region floor obstacles allowed_collisions padding options reach"
 )
 FLOOR = "floor"
+LEAST_SAMPLES = 10_000  # of the database of what the arm reaches
 SHAPE_KEYS = "box cylinder sphere mesh shapes scale"
 
 
@@ -142,6 +143,10 @@ def load_scenario(
     covariance = _read_covariance(root["arrival_covariance"]) if "arrival_covariance" in root else None
     options = _read_options(root, "options", _core._supply_option_table(), {"positioning_uncertainty"})
     reach = _read_options(root, "reach", _core._reach_option_table(), set())
+    if reach.get("samples", LEAST_SAMPLES) < LEAST_SAMPLES:
+        root["reach"]["samples"].fail(
+            f"must be at least {LEAST_SAMPLES}: fewer draws say nothing of what the arm reaches"
+        )
     obstacles = _read_obstacles(root)
     setup = read_setup(choose_sections(root, robot), progress)
     if setup.robot.base == "fixed":

@@ -12,7 +12,9 @@ from typing import Any
 
 from .. import _core
 from .._core import InvalidInput, IoError
+from .._files import read_bytes, read_text
 
+LARGEST_TEXT = 256_000_000  # [bytes], as of a URDF
 _LOCK = threading.Lock()  # the package keeps what it works on in module variables
 
 
@@ -20,12 +22,7 @@ def read_or_expand(path: str, package_dirs: Mapping[str, str], xacro_args: Mappi
     """The text of a file; of a file called .xacro, what it expands to."""
     if path.endswith(".xacro"):
         return expand(path, package_dirs, xacro_args)
-    try:
-        return Path(path).read_text(encoding="utf-8")
-    except FileNotFoundError:
-        raise IoError(f"file {path}: does not exist") from None
-    except (OSError, UnicodeDecodeError) as error:
-        raise IoError(f"file {path}: cannot be read: {error}") from None
+    return read_text(Path(path), LARGEST_TEXT)
 
 
 def expand(
@@ -51,7 +48,7 @@ def expand(
 
     def parse_plain(text: Any, filename: str | None = None) -> Any:
         if text is None and filename is not None:
-            content = Path(filename).read_bytes()
+            content = read_bytes(Path(filename), LARGEST_TEXT)
             for word in (b"<!DOCTYPE", b"<!ENTITY"):
                 if word in content.upper():
                     raise InvalidInput(f"{word.decode()}> declarations are refused")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import math
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -65,13 +65,15 @@ def write_report(plan: dict[str, Any], out_dir: str | Path) -> Path:
     return path
 
 
-def report_html(plan: dict[str, Any], pictures_dir: Path | None = None) -> str:
-    """The page as text."""
+def report_html(
+    plan: dict[str, Any], pictures_dir: Path | None = None, timings: Sequence[tuple[str, float]] = ()
+) -> str:
+    """The page as text; `timings`: stages of planning and how long each took [s]."""
     name = plan["scenario"].get("name", "plan")
     sections = [_headline(plan), _obstructions(plan), _top_view(plan)]
     if plan["outcome"] == "solved":
         sections += [_stops(plan), _picks(plan), _in_passing(plan)]
-    sections += [_alternatives(plan), _candidates(plan), _pictures(plan, pictures_dir), _timings(plan), _facts(plan)]
+    sections += [_alternatives(plan), _candidates(plan), _pictures(plan, pictures_dir), _timings(timings), _facts(plan)]
     return (
         '<!doctype html><html lang="en"><head><meta charset="utf-8">'
         '<meta name="viewport" content="width=device-width, initial-scale=1">'
@@ -320,15 +322,15 @@ def _pictures(plan: dict[str, Any], pictures_dir: Path | None) -> str:
     return "<h2>Pictures</h2><div class='pictures'>" + "".join(figures) + "</div>" if figures else ""
 
 
-def _timings(plan: dict[str, Any]) -> str:
-    longest = max((t["seconds"] for t in plan["timings"]), default=0) or 1
+def _timings(timings: Sequence[tuple[str, float]]) -> str:
+    longest = max((seconds for _, seconds in timings), default=0) or 1
     rows = [
         [
-            escape(item["stage"]),
-            f"{item['seconds']:.2f}",
-            f'<div class="bar" style="width:{100 * item["seconds"] / longest:.1f}%"></div>',
+            escape(stage),
+            f"{seconds:.2f}",
+            f'<div class="bar" style="width:{100 * seconds / longest:.1f}%"></div>',
         ]
-        for item in plan["timings"]
+        for stage, seconds in timings
     ]
     return "<h2>Time spent planning</h2>" + table(["stage", "seconds", ""], rows, {1}) if rows else ""
 

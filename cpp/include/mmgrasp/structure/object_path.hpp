@@ -47,8 +47,9 @@ struct MMGRASP_EXPORT ObjectPathOptions {
   double rotation_tolerance = 0.05;  ///< And turned by no more than this from it [rad]; > 0.
   double edge_step = 0.02;           ///< No joint moves more than this between two collision checks [rad or m]; > 0.
   bool check_edges = true;           ///< Check motions between waypoints, which P2's Algorithm 3.1 leaves out.
-  /// Only one arm configuration at each pose, as P2's single-IK variant has it (3.5.2.4): what a numerical solver finds
-  /// from the one before, at first from the middle of the joints' limits, and from random starts where that fails.
+  /// Only one arm configuration at each pose, as P2's single-IK variant has it (3.5.2.4): the nearest to the one
+  /// before, at first to where the arm stands (JointGroup::reference). Arms without closed form and moving bases: what
+  /// a numerical solver finds from there, and from random starts where that fails.
   bool single_configuration = false;
   bool all_turns = true;      ///< Joints that may turn more than once come in every turn.
   int redundant_values = 0;   ///< Samples of a seventh joint, evenly over its range; 0: 24. >= 0.

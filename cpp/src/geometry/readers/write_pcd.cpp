@@ -1,9 +1,8 @@
 // write_pcd(): point clouds as PCL reads them.
 #include <cstdint>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 
+#include "mmgrasp/core/detail/file_content.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/geometry/point_cloud.hpp"
 
@@ -31,9 +30,8 @@ void write_pcd(const std::string& path, const PointCloud& cloud) {
           std::to_string(cloud.points.size()), "must be width * height many");
   require(cloud.labels.empty() || cloud.labels.size() == cloud.points.size(), "cloud.labels",
           std::to_string(cloud.labels.size()), "must be one a point, or none");
-  const std::string temporary = path + ".part";
-  std::ofstream file(temporary, std::ios::binary);
-  file << header_of(cloud);
+  std::string data;
+  data.reserve(cloud.points.size() * 16);
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {
     char bytes[16];
     const Eigen::Vector3f point = cloud.points[i].cast<float>();
@@ -42,15 +40,9 @@ void write_pcd(const std::string& path, const PointCloud& cloud) {
       const std::int32_t label = cloud.labels[i];
       std::memcpy(bytes + 12, &label, 4);
     }
-    file.write(bytes, cloud.labels.empty() ? 12 : 16);
+    data.append(bytes, cloud.labels.empty() ? 12 : 16);
   }
-  file.close();
-  std::error_code error;
-  if (file) std::filesystem::rename(temporary, path, error);
-  if (!file || error) {
-    std::filesystem::remove(temporary, error);
-    throw IoError("point cloud file '" + path + "': cannot be written");
-  }
+  detail::write_file(path, "point cloud file", {header_of(cloud), data});
 }
 
 }  // namespace mmgrasp

@@ -236,7 +236,7 @@ void write_sdf(const SdfGrid& grid, const std::string& path) {
 }
 
 std::shared_ptr<SdfGrid> read_sdf(const std::string& path) {
-  const std::string text = file_content(path, "map");
+  const std::string text = file_content(path, "map", kLargestMap);
   const std::size_t magic = sizeof(kMagic) - 1;
   Reader head(text, std::min(magic, text.size()), text.size(), path);
   if (text.compare(0, magic, kMagic) != 0) head.refuse("is no map of mmgrasp");

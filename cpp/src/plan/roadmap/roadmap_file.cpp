@@ -1,10 +1,8 @@
 // Roadmap::save and Roadmap::load. A file holds vertices and edges as they are in memory: magic, key, sizes, numbers,
 // checksum.
 #include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
 
+#include "mmgrasp/core/detail/file_content.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/hash.hpp"
 #include "plan/roadmap/roadmap_data.hpp"
@@ -23,14 +21,6 @@ struct Header {
 
 void append(std::string& out, const void* bytes, std::size_t size) {
   out.append(static_cast<const char*>(bytes), size);
-}
-
-std::string content_of(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw IoError(path + ": cannot be opened");
-  std::ostringstream content;
-  content << file.rdbuf();
-  return content.str();
 }
 
 }  // namespace
@@ -67,20 +57,11 @@ void Roadmap::save(const std::string& path) const {
   }
   const std::uint64_t checksum = Hasher().add(out).value();
   append(out, &checksum, sizeof checksum);
-  const std::string temporary = path + ".tmp";
-  {
-    std::ofstream file(temporary, std::ios::binary);
-    file.write(out.data(), static_cast<std::streamsize>(out.size()));
-    file.flush();
-    if (!file) throw IoError(temporary + ": cannot be written");
-  }
-  std::error_code error;
-  std::filesystem::rename(temporary, path, error);
-  if (error) throw IoError(path + ": cannot be written: " + error.message());
+  detail::write_file(path, "roadmap", {out});
 }
 
 Roadmap Roadmap::load(const std::string& path, const JointGroup& group) {
-  const std::string content = content_of(path);
+  const std::string content = detail::file_content(path, "roadmap");
   constexpr std::size_t kStart = sizeof kMagic - 1;
   if (content.compare(0, kStart, kMagic) != 0) throw IoError(path + ": is no roadmap of this version");
   if (content.size() < kStart + sizeof(Header) + sizeof(std::uint64_t)) throw IoError(path + ": is cut off");

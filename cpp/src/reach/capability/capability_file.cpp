@@ -3,9 +3,9 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 
 #include "mmgrasp/core/detail/crc32.hpp"
+#include "mmgrasp/core/detail/file_content.hpp"
 #include "mmgrasp/core/detail/json_value.hpp"
 #include "mmgrasp/core/detail/npy_file.hpp"
 #include "mmgrasp/core/error.hpp"
@@ -83,9 +83,7 @@ std::string meta_text(const Data& data, std::uint64_t reached, const std::vector
 }
 
 detail::JsonValue read_meta(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) refuse(path, "cannot be opened");
-  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  const std::string text = detail::file_content(path, "capability map", detail::kLargestText);
   if (text.find(kName) == std::string::npos) refuse(path, "not of a capability map");
   const std::size_t before = text.rfind(kSumMember);
   if (before == std::string::npos) refuse(path, "truncated: it does not end with its checksum");
@@ -154,7 +152,8 @@ std::vector<unsigned char> read_array(const std::string& folder, const ArrayFile
 
 }  // namespace
 
-void CapabilityMap::save(const std::string& path) const {
+void CapabilityMap::save(const std::string& folder) const {
+  const std::string path = detail::folder_name(folder);
   const std::string temporary = detail::temporary_beside(path);
   std::error_code error;
   if (!fs::create_directory(temporary, error)) refuse(path, "cannot write (" + error.message() + ")");

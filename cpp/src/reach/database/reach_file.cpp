@@ -35,11 +35,15 @@ bool is_old_file(const fs::path& path) {
   return fs::is_regular_file(path, error) && starts_with(path, "MMGREACH");
 }
 
-bool is_something_else(const fs::path& path) {
+/// Whether anything stands there that is no earlier save of what was written: it may be somebody's.
+bool is_something_else(const fs::path& path, const fs::path& written) {
   std::error_code error;
-  if (fs::is_regular_file(path, error)) return !is_old_file(path);
-  return fs::is_directory(path, error) && !fs::is_empty(path, error) && !error &&
-         !fs::exists(path / detail::kMetaFile, error);
+  const auto kind = fs::symlink_status(path, error);
+  if (fs::is_regular_file(kind)) return !is_old_file(path);
+  if (fs::exists(kind) && !fs::is_directory(kind)) return true;  // a device, a pipe, a link that leads to no folder
+  for (fs::directory_iterator entry(path, error), end; !error && entry != end; entry.increment(error))
+    if (!fs::exists(written / entry->path().filename())) return true;
+  return false;
 }
 
 std::string file_in(const std::string& folder, const char* name) {
@@ -100,7 +104,12 @@ detail::View<T> view(const detail::CheckedFile& file, std::uint64_t count) {
 namespace detail {
 
 std::string folder_name(const std::string& path) {
-  return path.empty() ? path : fs::path(path + "/").parent_path().string();
+  if (path.empty()) return path;
+  std::error_code error;
+  const fs::path folder = fs::path(path + "/").parent_path();
+  if (!fs::is_symlink(folder, error) || !fs::is_directory(folder, error)) return folder.string();
+  const fs::path target = fs::canonical(folder, error);  // the link stays, and the folder it leads to is replaced
+  return error ? folder.string() : target.string();
 }
 
 std::string temporary_beside(const std::string& path) {
@@ -135,8 +144,8 @@ void put_in_place(const std::string& written, const std::string& path) {
   std::error_code error;
   constexpr int kLooks = 5;  // another save may take the folder away between two questions, but not every time
   int strange = 0;
-  while (strange < kLooks && is_something_else(path)) ++strange;
-  if (strange == kLooks) refuse(path, "cannot put the database in place: something that is none stands there");
+  while (strange < kLooks && is_something_else(path, written)) ++strange;
+  if (strange == kLooks) refuse(path, "cannot be written: something else stands there that saving would remove");
   // A folder cannot replace a full one in one step: for a moment none is there, never half of one. Others may do the
   // same at the same time; the last one stays.
   constexpr int kAttempts = 20;

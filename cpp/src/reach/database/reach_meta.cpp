@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
-#include <iterator>
 
 #include "mmgrasp/core/detail/crc32.hpp"
+#include "mmgrasp/core/detail/file_content.hpp"
 #include "mmgrasp/core/detail/json_value.hpp"
 #include "mmgrasp/core/error.hpp"
 
@@ -143,9 +142,7 @@ std::string meta_text(const ReachDatabase::Data& data, const FileChecksums& chec
 }
 
 Meta read_meta(const std::string& path, ReachDatabase::Data& data) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw IoError(path + ": cannot be opened");
-  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  const std::string text = file_content(path, "reachability database", kLargestText);
   if (text.find(kReachName) == std::string::npos) throw IoError(path + ": not of a reachability database");
   const std::size_t before = text.rfind(kSumMember);
   if (before == std::string::npos) throw IoError(path + ": truncated: it does not end with its checksum");

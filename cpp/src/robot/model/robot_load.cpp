@@ -1,9 +1,8 @@
 // Robot::load and from_strings: files, packages, meshes.
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
+#include "mmgrasp/core/detail/file_content.hpp"
 #include "mmgrasp/core/detail/utf8.hpp"
 #include "mmgrasp/core/detail/xml_document.hpp"
 #include "mmgrasp/core/error.hpp"
@@ -20,17 +19,6 @@ namespace fs = std::filesystem;
 
 constexpr double kLargestLink = 5.0;    // [m] beyond this a file is probably in other units
 constexpr double kSmallestLink = 1e-3;  // [m]
-
-std::string read_text(const std::string& path, const char* kind) {
-  std::error_code error;
-  if (!fs::exists(path, error)) throw IoError(std::string(kind) + " file " + path + ": does not exist");
-  if (fs::is_directory(path, error)) throw IoError(std::string(kind) + " file " + path + ": is a folder");
-  std::ifstream file(path, std::ios::binary);
-  std::stringstream text;
-  text << file.rdbuf();
-  if (!file) throw IoError(std::string(kind) + " file " + path + ": cannot be read");
-  return text.str();
-}
 
 /// Reads each mesh file once per scale, although robots use the same wheel or finger several times.
 class MeshCache {
@@ -146,12 +134,9 @@ Robot load_robot(const std::string& urdf, const std::string& urdf_origin, const 
 }  // namespace
 
 Robot Robot::load(const std::string& urdf_path, const std::string& srdf_path, const RobotOptions& options) {
-  const std::string urdf = read_text(urdf_path, "URDF");
+  const std::string urdf = detail::file_content(urdf_path, "URDF file", detail::kLargestText);
   std::string srdf;
-  if (!srdf_path.empty()) {
-    srdf = read_text(srdf_path, "SRDF");
-    if (srdf.empty()) throw InvalidInput(srdf_path + ": holds no XML element");
-  }
+  if (!srdf_path.empty()) srdf = detail::file_content(srdf_path, "SRDF file", detail::kLargestText);
   return load_robot(urdf, urdf_path, srdf, srdf_path, options);
 }
 

@@ -6,12 +6,18 @@
 #include <cmath>
 #include <set>
 
+#include "mmgrasp/core/detail/near_name.hpp"
 #include "mmgrasp/core/detail/xml_document.hpp"
 #include "mmgrasp/core/error.hpp"
 
 namespace mmgrasp::detail {
 namespace {
 
+/// What an SRDF may hold. The last ones are of MoveIt and not read here.
+const std::vector<std::string> kKinds = {"virtual_joint",     "passive_joint",      "group",
+                                         "group_state",       "end_effector",       "disable_default_collisions",
+                                         "enable_collisions", "disable_collisions", "link_sphere_approximation",
+                                         "joint_property"};
 constexpr std::size_t kMaxGroupNesting = 100;
 constexpr std::size_t kMostGroups = 1000;  // each may list every joint
 
@@ -40,6 +46,7 @@ class SrdfReader {
   void read() {
     const TiXmlElement& root = xml_.root();
     if (root.ValueStr() != "robot") xml_.fail(root, "root element of an SRDF must be <robot>");
+    read_kinds();
     const auto name = xml_.text(root, "name");
     if (name && *name != data_.name)
       warn(root, "is written for robot \"" + *name + "\", the URDF's is \"" + data_.name + "\"");
@@ -54,6 +61,21 @@ class SrdfReader {
   }
 
  private:
+  /// A URDF in the place of an SRDF would say nothing, and so would a misspelt element.
+  void read_kinds() {
+    for (const TiXmlElement* e = xml_.root().FirstChildElement(); e; e = e->NextSiblingElement())
+      if (e->ValueStr() == "link" || e->ValueStr() == "joint") xml_.fail(*e, "belongs into a URDF: this is no SRDF");
+    warn_of_others(xml_.root(), kKinds);
+  }
+
+  /// Says each unknown kind of element once in a parent.
+  void warn_of_others(const TiXmlElement& parent, const std::vector<std::string>& known) {
+    std::set<std::string> said(known.begin(), known.end());
+    for (const TiXmlElement* e = parent.FirstChildElement(); e; e = e->NextSiblingElement())
+      if (said.insert(e->ValueStr()).second)
+        warn(*e, "is ignored: unknown in <" + parent.ValueStr() + ">" + near_miss(e->ValueStr(), known));
+  }
+
   void warn(const TiXmlElement& element, const std::string& what) {
     data_.report.warnings.push_back(xml_.where(element) + ": " + what);
   }
@@ -130,6 +152,7 @@ class SrdfReader {
     if (known != collected_.end()) return known->second;
     const TiXmlElement& element = *group_elements_.at(name);
     if (visiting.size() >= kMaxGroupNesting) xml_.fail(element, "subgroups are nested too deeply: at most 100 levels");
+    warn_of_others(element, {"joint", "link", "chain", "group"});
     Members members;
     int chains = 0;
     visiting.insert(name);
@@ -244,7 +267,13 @@ class SrdfReader {
         warn(*e, "names group \"" + group + "\", which the SRDF lacks or which was dropped");
         continue;
       }
-      auto& values = data_.group_states[group][state];
+      const auto [entry, is_new] = data_.group_states[group].try_emplace(state);
+      if (!is_new) {
+        warn(*e, "is defined twice, the first is used");
+        continue;
+      }
+      auto& values = entry->second;
+      warn_of_others(*e, {"joint"});
       for (const TiXmlElement* j = e->FirstChildElement("joint"); j; j = j->NextSiblingElement("joint"))
         read_state_value(*j, values);
     }

@@ -164,9 +164,6 @@ inline FormVector cross(const FormVector& a, const FormVector& b) {
 inline FormVector operator*(const LinearForm& k, const FormVector& a) {
   return {k * a[0], k * a[1], k * a[2]};
 }
-inline FormVector operator*(const Eigen::Matrix3d& m, const FormVector& a) {
-  return {dot(m.row(0), a), dot(m.row(1), a), dot(m.row(2), a)};
-}
 
 /// R(axis, angle) v with the angle's cosine and sine.
 inline FormVector turned(const Eigen::Vector3d& axis, const LinearForm& c, const LinearForm& s, const FormVector& v) {

@@ -29,6 +29,18 @@ struct Configurations {
   std::vector<VectorXd> manipulability;
 };
 
+/// Where the group stands; a base that moves in the middle of its bounds.
+VectorXd configuration_of(const JointGroup& group) {
+  VectorXd q = 0.5 * (group.sample_lower() + group.sample_upper());
+  int place = 0;  // within the values of a joint
+  for (int i = group.has_base() ? 3 : 0; i < group.size(); ++i) {
+    const int joint = group.joints()[i];
+    place = i > 0 && group.joints()[i - 1] == joint ? place + 1 : 0;
+    q[i] = group.reference()[group.robot().joints()[joint].value_index + place];
+  }
+  return q;
+}
+
 /// The pose half way, turned about one axis.
 Pose half_way(const Pose& a, const Pose& b) {
   Pose middle = Pose::Identity();
@@ -104,7 +116,7 @@ struct ObjectPathEvaluator::Impl {
 Configurations ObjectPathEvaluator::Impl::find(const Poses& T_world_hand, ObjectPathResult& result) const {
   Configurations found;
   solver->place_bases(T_world_hand);
-  VectorXd last = 0.5 * (group->sample_lower() + group->sample_upper());
+  VectorXd last = options.single_configuration ? configuration_of(*group) : VectorXd();
   for (std::size_t i = 0; i < T_world_hand.size(); ++i) {
     const Vector6d motion = i == 0 ? Vector6d::Zero().eval() : pose_difference(T_world_hand[i - 1], T_world_hand[i]);
     detail::PathConfigurations::Layer layer = options.single_configuration

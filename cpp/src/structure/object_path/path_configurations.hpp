@@ -29,7 +29,7 @@ class PathConfigurations {
   /// `motion`: of the tool, a twist; zero for none.
   Layer at(const Pose& T_world_hand, const Vector6d& motion);
 
-  /// As a numerical solver that knows no branches finds one: a descent from `seed`, then from random starts.
+  /// The nearest to `seed` where all are known, else what a descent from there finds, then one from random starts.
   Layer single(const Pose& T_world_hand, const Vector6d& motion, const Eigen::VectorXd& seed);
 
   /// Several hundred configurations a pose, of which neighbours differ by the grid.

@@ -2,11 +2,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <iomanip>
 #include <sstream>
 
+#include "mmgrasp/core/detail/file_content.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/hash.hpp"
 #include "mmgrasp/task/platform_locations.hpp"
@@ -101,25 +100,12 @@ std::string IkSeedDatabase::body() const {
 
 void IkSeedDatabase::save(const std::string& path) const {
   const std::string text = body();
-  const std::string temporary = path + ".tmp";
-  {
-    std::ofstream file(temporary, std::ios::binary);
-    file << text << Hasher().add(text).hex() << '\n';
-    file.flush();
-    if (!file) throw IoError(temporary + ": cannot be written");
-  }
-  std::error_code error;
-  std::filesystem::rename(temporary, path, error);
-  if (error) throw IoError(path + ": cannot be written: " + error.message());
+  detail::write_file(path, "IK seeds", {text, Hasher().add(text).hex(), "\n"});
 }
 
 IkSeedDatabase IkSeedDatabase::load(const std::string& path, const JointGroup& group, int capacity) {
   IkSeedDatabase database(group, capacity);
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw IoError(path + ": cannot be opened");
-  std::stringstream content;
-  content << file.rdbuf();
-  const std::string text = content.str();
+  const std::string text = detail::file_content(path, "IK seeds");
   if (text.rfind(std::string(kMagic) + "\n", 0) != 0) damaged(path, "is no file of IK seeds of this version");
   if (text.size() < 18 || text.back() != '\n') damaged(path, "is cut off");
   const std::string body = text.substr(0, text.size() - 17), checksum = text.substr(text.size() - 17, 16);

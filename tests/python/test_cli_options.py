@@ -1,0 +1,107 @@
+"""Every option of every command with wrong values: the tables follow from the parser, so that none is left out."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+import pytest
+
+from conftest import ASSETS
+from mmgrasp.cli import main
+from mmgrasp.cli.arguments import build_parser
+
+NO_NUMBERS = [
+    "",
+    "x",
+    "nan",
+    "-nan",
+    "inf",
+    "1e999",
+    "1_0",
+    "\u0663",
+    " 1",
+    "1 ",
+    "0x10",
+    "1,5",
+    "1e7,1e7,1e7",
+    "9" * 400,
+    "-1e300",
+]
+NO_PATHS = ["", "a\0b"]
+NO_CHOICES = ["", "x", "\u202e", "a" * 5000]
+FETCH = str(ASSETS / "robots" / "fetchlike" / "fetchlike.urdf")
+
+
+def options() -> list[tuple[str, argparse.Action]]:
+    """Of all commands, those that take a value; switches and what is meant as any text are left out."""
+    commands = next(a for a in build_parser()._actions if isinstance(a, argparse._SubParsersAction))
+    every = [(name, action) for name, parser in commands.choices.items() for action in parser._actions]
+    return [(n, a) for n, a in every if a.nargs != 0 and (a.type is not None or a.choices)]
+
+
+def wrong(action: argparse.Action) -> list[str]:
+    kind = getattr(action.type, "__name__", "")
+    if action.choices:
+        return NO_CHOICES
+    if kind in ("_path", "_source"):
+        return NO_PATHS
+    return (
+        ["", "x", "=", "=x", "a=/no/such"]
+        if kind == "_package"
+        else ["", "x", "="]
+        if kind == "_xacro_argument"
+        else NO_NUMBERS
+    )
+
+
+def test_the_parser_was_read() -> None:
+    names = {(name, *action.option_strings) for name, action in options()}
+    assert len(names) > 50
+    assert {("plan", "--seed"), ("arrive", "--pose"), ("scan", "--up"), ("check", "--package")} <= names
+
+
+@pytest.mark.parametrize(("command", "action"), options(), ids=lambda v: v if isinstance(v, str) else v.dest)
+def test_wrong_values_are_refused(command: str, action: argparse.Action, capsys: pytest.CaptureFixture[str]) -> None:
+    parser = argparse.ArgumentParser(prog=command)
+    parser._add_action(action)
+    for text in wrong(action):
+        given = [text] * (action.nargs if isinstance(action.nargs, int) else 1)
+        if action.option_strings:
+            given[0] = f"{action.option_strings[-1]}={given[0]}"
+        with pytest.raises(SystemExit) as caught:
+            parser.parse_args(given)
+        assert caught.value.code == 2
+        assert action.dest in capsys.readouterr().err.replace("-", "_"), text[:30]
+
+
+NAMES = [
+    (["plan", "{s}", "-o", "{o}", "--robot", "tiag"], "did you mean tiago?"),
+    (["verify", "{p}", "--robot", "tiago"], "needs scenario"),
+    (["grasp", "{o}", "--gripper", "tiag"], "did you mean tiago?"),
+    (["grasp", "{o}", "--gripper", "asset:none.yaml"], "none.yaml"),
+    (["pipe", "pipe99", "-o", "{o}"], "pipe99"),
+    (["grippers", "puley", "-o", "{o}"], "pulley"),
+    (["reproduce", "p1-tabel-3.3"], "p1-table-3.3"),
+    (["bench", "mbm", "--data", "{o}", "--robot", "pr3"], "pr3"),
+    (["bench", "mbm", "--data", "{o}", "--set", "boxes"], "boxes"),
+    (["bench", "mbm", "--data", "{o}", "--planner", "rrt_konnect"], "did you mean rrt_connect?"),
+    (["check", FETCH, "--srdf", "{o}/none.srdf"], "none.srdf"),
+    (["check", FETCH, "--xacro-arg", "a=1"], "xacro"),
+]
+
+
+@pytest.mark.parametrize(("arguments", "piece"), NAMES, ids=lambda v: " ".join(v)[:50] if isinstance(v, list) else "")
+def test_names_that_are_none(
+    arguments: list[str], piece: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "plan.json").write_text("{}")
+    places = {"s": ASSETS / "scenarios" / "storeroom.yaml", "o": tmp_path / "out", "p": tmp_path / "plan.json"}
+    try:
+        code = main([a.format(**places) for a in arguments])
+    except SystemExit as stop:  # the parser's
+        code = int(str(stop.code))
+    error = capfd.readouterr().err
+    assert code == 2
+    assert piece in error and "Traceback" not in error
+    assert not (tmp_path / "out").exists()

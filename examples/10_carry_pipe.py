@@ -14,7 +14,5 @@ print(f"{within_reach} of {len(grasps)} grasps are within reach at both ends; re
 print(found)
 if found.path is not None:
     grasp = grasps[found.grasp_index]
-    print(
-        f"taken: {grasp}; {found.stats['graph_searches']} searches of the roadmap in {found.stats['search_seconds']:.2f} s"
-    )
+    print(f"taken: {grasp}; {found.stats.graph_searches} searches of the roadmap in {found.stats.search_seconds:.2f} s")
     print("picture:", write_transfer(cell, grasp, found.path, "carry_pipe.png"))

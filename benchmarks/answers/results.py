@@ -68,5 +68,5 @@ def stops(found: Any) -> Answer:
 def shared_cells(found: Any) -> list[Any]:
     return [
         [s.trays, s.heading, s.centre, s.radius, s.cells]
-        for s in itertools.chain(get(found, "robust"), get(found, "lost", "not_robust"))
+        for s in itertools.chain(get(found, "robust"), get(found, "too_small", "lost"))
     ]

@@ -58,7 +58,10 @@ def supply(name: str, trays: int, targets: int) -> Answer:
         "stops": [stop(s) for s in found.stops],
         "route": [[leg.poses, leg.length, leg.turning] for leg in found.route],
         "picks": picks,
-        "motions": [[[timed(m.trajectory), m.opening, m.holding] for m in pick.motions] for pick in found.picks],
+        "motions": [
+            [[timed(m.trajectory), m.opening, get(m, "attached", "holding")] for m in pick.motions]
+            for pick in found.picks
+        ],
     }
     shown = {
         "outcome": found.outcome.name,

@@ -122,7 +122,7 @@ def searches_table(runs: int, folder: Path) -> str:
     others = {**scipy_ways(), **pygmo_ways()}
     rows = []
     for pipe in PIPES:
-        known = optimum(pipe, seed=1, boxes=60_000, evaluations=30_000)
+        known = optimum(pipe, seed=1, boxes=1_000_000, evaluations=30_000, threads=1)
         target = (1 + WITHIN) * known["cost"]
         gap = 100 * (1 - known["lower bound"] / known["cost"])
         rows.append(

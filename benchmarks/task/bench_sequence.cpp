@@ -37,7 +37,7 @@ void run(const mmgrasp::test::Layout& layout) {
   const std::size_t count = cover.chosen.size();
   if (count == 0) throw std::runtime_error(layout.name + ": no cover");
   bench::Line line;
-  line.row = "least stops";
+  line.row = "exact stops";
   line.on = layout.name;
   line.who = "mmgrasp";
   line.unit = "s";

@@ -73,7 +73,7 @@ void bind_stops(py::module_& m) {
   py::class_<Intersections>(m, "Intersections",
                             "Sets of regions whose shared cells hold a disc that is large enough (P1 3.4.2).")
       .def_readonly("robust", &Intersections::robust, "The sets whose disc is large enough.")
-      .def_readonly("lost", &Intersections::lost, "Shared cells whose disc is too small, largest first.")
+      .def_readonly("too_small", &Intersections::too_small, "Shared cells whose disc is too small, largest first.")
       .def_readonly("sets_tried", &Intersections::sets_tried, "Sets checked.")
       .def_readonly("complete", &Intersections::complete, "False when the search ended early.")
       .def_readonly("sets_too_small", &Intersections::sets_too_small,

@@ -80,7 +80,7 @@ void bind_outcomes(py::module_& m) {
       .def_readonly("unreachable", &Rejections::unreachable, "No arm configuration reaches the pose.")
       .def_readonly("limits", &Rejections::limits, "Reached only outside joint limits.")
       .def_readonly("self_collision", &Rejections::self_collision, "Reached, but robot hits robot or what it holds.")
-      .def_readonly("scene", &Rejections::scene, "Reached, but robot (or what it holds) hits the scene.")
+      .def_readonly("scene", &Rejections::scene, "Reached, but the robot, or what is attached to it, hits the scene.")
       .def_readonly("grasp_filter", &Rejections::grasp_filter, "Rejected before inverse kinematics.")
       .def_property_readonly("total", &Rejections::total, "Over all filters.")
       .def(

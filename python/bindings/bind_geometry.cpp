@@ -11,7 +11,7 @@
 namespace mmgrasp::python {
 namespace {
 
-constexpr char kStandIn[] = "mmgrasp._records.MeshStandIn";
+constexpr char kStandIn[] = "mmgrasp.records.MeshStandIn";
 using StandIn = Shown<kStandIn>;
 
 std::string number(double value) {

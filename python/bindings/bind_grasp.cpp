@@ -99,13 +99,13 @@ void bind_record(py::module_& m) {
       .def_readonly("cost", &Grasp::cost, "Added by planners to their path's length.")
       .def_readonly("quality", &Grasp::quality, "Larger is better, in [0, 1].")
       .def_property_readonly(
-          "parts",
+          "quality_factors",
           [](const Grasp& g) {
-            std::map<std::string, std::pair<double, double>> parts;
-            for (const QualityPart& part : g.parts) parts[part.name] = {part.value, part.weight};
-            return parts;
+            std::map<std::string, std::pair<double, double>> factors;
+            for (const QualityFactor& one : g.quality_factors) factors[one.name] = {one.value, one.weight};
+            return factors;
           },
-          "Parts of the quality by name: (value, weight); each is a factor 1 - weight + weight * value.")
+          "What the quality is the product of, by name: (value, weight) of the factor 1 - weight + weight * value.")
       .def_readonly("posture", &Grasp::posture, "How far each joint group of the hand is open; []: as `opening` says.")
       .def_property_readonly(
           "provenance", [](const Grasp& g) { return g.provenance; },
@@ -113,13 +113,13 @@ void bind_record(py::module_& m) {
       .def(
           "to_dict",
           [](const Grasp& g) {
-            py::dict parts;
-            for (const QualityPart& part : g.parts) parts[py::str(part.name)] = part.value;
+            py::dict factors;
+            for (const QualityFactor& one : g.quality_factors) factors[py::str(one.name)] = one.value;
             return py::dict("T_object_hand"_a = to_array(g.T_object_hand).attr("tolist")(), "opening"_a = g.opening,
-                            "cost"_a = g.cost, "quality"_a = g.quality, "parts"_a = parts, "posture"_a = g.posture,
-                            "provenance"_a = provenance_dict(g.provenance));
+                            "cost"_a = g.cost, "quality"_a = g.quality, "quality_factors"_a = factors,
+                            "posture"_a = g.posture, "provenance"_a = provenance_dict(g.provenance));
           },
-          "All of it as numbers, strings, lists and dicts; parts by their values.")
+          "All of it as numbers, strings, lists and dicts; factors of the quality by their values.")
       .def("__repr__", [](const Grasp& g) {
         return "Grasp(at " + text(g.T_object_hand.translation()) +
                ", opening=" + std::string(py::repr(py::float_(g.opening))) +

@@ -7,7 +7,7 @@ namespace {
 
 constexpr char kMaskImages[] = "dict[str, numpy.typing.NDArray[numpy.uint8]]";
 using MaskImages = Shown<kMaskImages>;
-constexpr char kCounts[] = "mmgrasp._records.GraspabilityCounts";
+constexpr char kCounts[] = "mmgrasp.records.GraspabilityCounts";
 using CountsDict = Shown<kCounts>;
 
 using namespace py::literals;

@@ -8,8 +8,6 @@
 namespace mmgrasp::python {
 namespace {
 
-/// Others than those named are refused with the near miss.
-using NoMoreKeywords = py::KWArgs<py::typing::Never>;
 constexpr char kShapeOrShapes[] = "mmgrasp._core.LinkShape | collections.abc.Sequence[mmgrasp._core.LinkShape]";
 using ShapeOrShapes = Shown<kShapeOrShapes>;
 constexpr char kGraspsOrPoses[] = "collections.abc.Sequence[mmgrasp._core.Grasp] | numpy.typing.ArrayLike";
@@ -58,13 +56,6 @@ std::vector<LinkShape> object_argument(const py::object& value) {
 
 using Strings = std::vector<std::string>;
 
-void refuse_unknown(const py::kwargs& unknown, const Strings& known) {
-  for (const auto& [key, value] : unknown) {
-    const std::string name = py::cast<std::string>(key);
-    throw InvalidInput("ManipulationProblem(" + name + "=...): unknown keyword" + nearest_name(name, known));
-  }
-}
-
 }  // namespace
 
 void bind_manipulation_problem(py::module_& m) {
@@ -80,8 +71,9 @@ void bind_manipulation_problem(py::module_& m) {
                        const ArrayLike& T_world_start, const ArrayLike& T_world_goal, const GraspsOrPoses& grasps,
                        const std::optional<Given<Hand>>& gripper, const Given<Strings>& touch_links,
                        const Given<std::string>& object_name, const NoMoreKeywords& unknown) {
-             refuse_unknown(unknown, {"group", "world", "object", "T_world_start", "T_world_goal", "grasps", "gripper",
-                                      "touch_links", "object_name"});
+             refuse_unknown("ManipulationProblem", unknown,
+                            {"group", "world", "object", "T_world_start", "T_world_goal", "grasps", "gripper",
+                             "touch_links", "object_name"});
              ManipulationProblem problem{with_sampled_pairs(taken(group, "group")),
                                          taken(world, "world"),
                                          object_argument(object),

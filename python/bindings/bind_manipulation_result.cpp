@@ -5,12 +5,12 @@
 namespace mmgrasp::python {
 namespace {
 
-constexpr char kStatsDict[] = "mmgrasp._records.ManipulationStats";
-using StatsDict = Shown<kStatsDict>;
+constexpr char kStageRows[] = "dict[str, mmgrasp.records.StageRow]";
+using StageRows = Shown<kStageRows>;
 
 using namespace py::literals;
 
-py::dict stages_dict(const std::vector<StageReport>& stages) {
+StageRows stages_dict(const std::vector<StageReport>& stages) {
   py::dict out;
   for (const StageReport& r : stages) {
     out[to_string(r.stage)] = py::dict("improvements"_a = r.improvements, "first_seconds"_a = r.first_seconds,
@@ -19,7 +19,7 @@ py::dict stages_dict(const std::vector<StageReport>& stages) {
   return out;
 }
 
-StatsDict stats_dict(const ManipulationStats& s) {
+py::dict stats_dict(const ManipulationStats& s) {
   return py::dict(
       "ik_seconds"_a = s.ik_seconds, "roadmap_seconds"_a = s.roadmap_seconds, "search_seconds"_a = s.search_seconds,
       "graph_searches"_a = s.graph_searches, "nodes_opened"_a = s.nodes_opened, "grasps_searched"_a = s.grasps_searched,
@@ -117,11 +117,46 @@ void bind_result_parts(py::module_& m) {
       });
 }
 
+void bind_stats(py::module_& m) {
+  using S = ManipulationStats;
+  py::class_<S>(m, "ManipulationStats", "What a search of plan_manipulation took.")
+      .def_readonly("ik_seconds", &S::ik_seconds, "Time for the arm configurations at start and goal [s].")
+      .def_readonly("roadmap_seconds", &S::roadmap_seconds,
+                    "Time for building a roadmap [s]; 0: it was given or not used.")
+      .def_readonly("search_seconds", &S::search_seconds, "Time for all the rest [s].")
+      .def_readonly("graph_searches", &S::graph_searches, "Searches of prm_star_mg's per-grasp graphs.")
+      .def_readonly("nodes_opened", &S::nodes_opened,
+                    "Nodes pushed to the open lists of graph searches (prm_star_mg without lazy_grasps).")
+      .def_readonly("grasps_searched", &S::grasps_searched,
+                    "Grasps for which prm_star_mg searched a roadmap; each counts once.")
+      .def_readonly("roadmap_cost", &S::roadmap_cost,
+                    "Cost of prm_star_mg's best path over the roadmap before shortening; 0: none is cheaper than the "
+                    "first path.")
+      .def_readonly("roadmap_bound", &S::roadmap_bound,
+                    "No path over prm_star_mg's roadmap, or straight, costs less; infinite: there is none.")
+      .def_readonly("postures_bound", &S::postures_bound,
+                    "No path between the arm postures that were found costs less.")
+      .def_readonly("edges_checked_robot", &S::edges_checked_robot,
+                    "Edges checked for the robot alone, shared by all grasps of an opening.")
+      .def_readonly("edges_checked_attached", &S::edges_checked_attached, "Edges checked for the attached object.")
+      .def_readonly("samples", &S::samples, "Samples that rrt_star_mg drew or reassigned.")
+      .def_readonly("vertices", &S::vertices, "Vertices of rrt_star_mg's trees, removed ones included.")
+      .def_property_readonly(
+          "stages", [](const S& s) { return stages_dict(s.stages); },
+          "What each stage contributed, by its name, in the order of their first improvement.")
+      .def("to_dict", &stats_dict, "As a dict of plain numbers, strings and lists, e.g. for JSON.")
+      .def("__repr__", [](const S& s) {
+        return "ManipulationStats(" + std::string(py::repr(py::float_(s.search_seconds))) + " s, " +
+               std::to_string(s.graph_searches) + " graph searches, " + std::to_string(s.samples) + " samples)";
+      });
+}
+
 }  // namespace
 
 void bind_manipulation_result(py::module_& m) {
   bind_tree(m);
   bind_result_parts(m);
+  bind_stats(m);
   py::class_<ManipulationResult>(m, "ManipulationResult", "What plan_manipulation found.")
       .def_readonly("outcome", &ManipulationResult::outcome, "How it ended; `solved` alone comes with an answer.")
       .def_readonly("grasp_index", &ManipulationResult::grasp_index, "Of the problem's grasps; -1 unless solved.")
@@ -141,9 +176,8 @@ void bind_manipulation_result(py::module_& m) {
                     "What may have kept paths from being found: a roadmap in pieces.")
       .def_readonly("trees", &ManipulationResult::trees,
                     "With keep_trees: a SearchTree for each grasp still a candidate and each end.")
-      .def_property_readonly(
-          "stats", [](const ManipulationResult& r) { return stats_dict(r.stats); },
-          "What the search took: seconds, searches, edges checked; what each stage found and when.")
+      .def_readonly("stats", &ManipulationResult::stats,
+                    "What the search took: seconds, searches, edges checked; what each stage found and when.")
       .def("to_dict", &result_dict, "As a dict of plain numbers, strings and lists, e.g. for JSON.")
       .def("__repr__", &result_text);
 }

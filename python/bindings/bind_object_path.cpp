@@ -74,6 +74,8 @@ struct OptimizeGraspOptions {
 const std::vector<OptionField<GraspSearchOptions>>& grasp_search_fields() {
   using O = GraspSearchOptions;
   static const std::vector<OptionField<O>> fields{
+      option<O>("front_searches", &O::front_searches,
+                "further searches, each for another mix of the objectives: the Pareto front is searched"),
       option<O>("max_gap", &O::max_gap, "branch_and_bound: ends once no grasp can be cheaper by this share"),
       option<O>("max_boxes", &O::max_boxes, "branch_and_bound: budget in boxes of grasps"),
       option<O>("time_limit", &O::time_limit, "branch_and_bound: wall-clock cap [s]"),
@@ -245,6 +247,10 @@ void bind_optimum(py::module_& m) {
        option_help(optimize_grasp_fields()))
           .c_str());
   m.def("population_search_names", &population_search_names, "The population searches among grasp_search_names().");
+  m.def(
+      "default_grasp_search",
+      [](const Given<JointGroup>& group) { return default_grasp_search(taken(group, "group")); }, "group"_a,
+      "branch_and_bound for arms that it takes, else bees.");
   m.def("grasp_search_names", &grasp_search_names, "Names that optimize_grasp's `algorithm` takes.");
 }
 

@@ -4,7 +4,7 @@
 namespace mmgrasp::python {
 namespace {
 
-constexpr char kSearchCounts[] = "mmgrasp._records.SearchCounts";
+constexpr char kSearchCounts[] = "mmgrasp.records.SearchCounts";
 using SearchCounts = Shown<kSearchCounts>;
 
 using namespace py::literals;

@@ -5,7 +5,7 @@
 namespace mmgrasp::python {
 namespace {
 
-constexpr char kRoadmapStatistics[] = "mmgrasp._records.RoadmapStatistics";
+constexpr char kRoadmapStatistics[] = "mmgrasp.records.RoadmapStatistics";
 using RoadmapStatisticsDict = Shown<kRoadmapStatistics>;
 
 using namespace py::literals;

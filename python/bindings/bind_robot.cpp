@@ -15,13 +15,13 @@ namespace {
 
 constexpr char kPackageFolders[] = "collections.abc.Mapping[str, str | os.PathLike[str]] | None";
 using PackageFolders = Shown<kPackageFolders>;
-constexpr char kRobotReport[] = "mmgrasp._records.RobotReport";
+constexpr char kRobotReport[] = "mmgrasp.records.RobotReport";
 using RobotReportDict = Shown<kRobotReport>;
-constexpr char kJointRows[] = "list[mmgrasp._records.JointRow]";
+constexpr char kJointRows[] = "list[mmgrasp.records.JointRow]";
 using JointRows = Shown<kJointRows>;
-constexpr char kGroupRows[] = "dict[str, mmgrasp._records.GroupRow]";
+constexpr char kGroupRows[] = "dict[str, mmgrasp.records.GroupRow]";
 using GroupRows = Shown<kGroupRows>;
-constexpr char kEndEffectorRows[] = "list[mmgrasp._records.EndEffectorRow]";
+constexpr char kEndEffectorRows[] = "list[mmgrasp.records.EndEffectorRow]";
 using EndEffectorRows = Shown<kEndEffectorRows>;
 constexpr char kLinkPairs[] = "list[tuple[str, str, str]]";
 using LinkPairs = Shown<kLinkPairs>;
@@ -161,9 +161,9 @@ JointGroup make_group(const Robot& robot, const OptionalText& name, const Option
   return robot.chain(py::cast<std::string>(base_link), tip_name, with_base);
 }
 
-constexpr char kUrdfRows[] = "list[mmgrasp._records.UrdfRow]";
+constexpr char kUrdfRows[] = "list[mmgrasp.records.UrdfRow]";
 using UrdfRows = Shown<kUrdfRows>;
-constexpr char kAddedLinkRows[] = "list[mmgrasp._records.AddedLinkRow]";
+constexpr char kAddedLinkRows[] = "list[mmgrasp.records.AddedLinkRow]";
 using AddedLinkRows = Shown<kAddedLinkRows>;
 
 UrdfRows urdf_dicts(const RobotSource& source) {

@@ -10,7 +10,7 @@ namespace {
 
 using namespace py::literals;
 
-constexpr char kGripperRows[] = "list[mmgrasp._records.GripperEventRow]";
+constexpr char kGripperRows[] = "list[mmgrasp.records.GripperEventRow]";
 using GripperRows = Shown<kGripperRows>;
 
 py::object plain(const Eigen::VectorXd& values) {

@@ -123,7 +123,7 @@ void bind_success(py::module_& m) {
            [](const R& r) { return "GraspRating(" + std::string(py::repr(py::float_(r.success.probability))) + ")"; });
 }
 
-constexpr char kCounts[] = "mmgrasp._records.SynthesisCounts";
+constexpr char kCounts[] = "mmgrasp.records.SynthesisCounts";
 using CountsDict = Shown<kCounts>;
 
 CountsDict counts_dict(const SynthesisCounts& c) {

@@ -135,14 +135,14 @@ void bind_problem(py::module_& m) {
                                 "    problem = mg.load_scenario(\"storeroom.yaml\").problem()\n"
                                 "    database = mg.ReachDatabase.build(problem.arm)\n"
                                 "    plan = mg.base.plan_part_supply(problem, database)")
-      .def(py::init([](const Robot& robot, const JointGroup& arm, const Hand& gripper, const World& scene,
+      .def(py::init([](const Robot& robot, const JointGroup& arm, const Hand& gripper, const World& world,
                        std::vector<Tray> trays, const ArrayLike& home, const ArrayLike& start, const ArrayLike& goal,
                        const PlaceRegion& place_region, const OptionalArray& arrival_covariance,
                        const py::kwargs& options) {
              PartSupplyProblem problem{robot,
                                        arm,
                                        gripper,
-                                       scene,
+                                       world,
                                        std::move(trays),
                                        vector_argument(home, "home", arm.size()),
                                        vector3_argument(start, "start"),
@@ -154,10 +154,10 @@ void bind_problem(py::module_& m) {
              problem.check();
              return problem;
            }),
-           py::arg("robot"), py::arg("arm"), py::arg("gripper"), py::arg("scene"), py::arg("trays"), py::arg("home"),
+           py::arg("robot"), py::arg("arm"), py::arg("gripper"), py::arg("world"), py::arg("trays"), py::arg("home"),
            py::arg("start"), py::arg("goal"), py::arg("place_region"), py::kw_only(),
            py::arg("arrival_covariance") = py::none(),
-           ("`scene` is without the parts; `home` (n,) is the arm's configuration while driving; `start` and `goal` "
+           ("`world` is without the parts; `home` (n,) is the arm's configuration while driving; `start` and `goal` "
             "(3,) are base\nposes x, y, theta [m, m, rad]. `arrival_covariance` (3, 3) of x, y [m^2] and theta [rad^2] "
             "in the world's axes says how far\nfrom a stop the base comes to stand; stops then are where most arrivals "
             "serve all their parts. Raises InvalidInput naming\nthe field that breaks its rule." +
@@ -166,7 +166,7 @@ void bind_problem(py::module_& m) {
       .def_readonly("robot", &PartSupplyProblem::robot, "The robot.")
       .def_readonly("arm", &PartSupplyProblem::arm, "The arm, without base joints.")
       .def_readonly("gripper", &PartSupplyProblem::gripper, "The gripper of the arm.")
-      .def_readonly("scene", &PartSupplyProblem::scene, "Obstacles, tables and trays, without the parts.")
+      .def_readonly("world", &PartSupplyProblem::world, "Obstacles, tables and trays, without the parts.")
       .def_readonly("trays", &PartSupplyProblem::trays, "The trays with their parts.")
       .def_readonly("home", &PartSupplyProblem::home, "Arm configuration while driving (n,), fingers closed.")
       .def_readonly("start", &PartSupplyProblem::start, "Base pose at the beginning (3,): x, y, theta [m, m, rad].")
@@ -190,7 +190,7 @@ void bind_picks(py::module_& m) {
           "kind", [](const PickMotion& p) { return to_string(p.kind); },
           "transit, approach, lift, transfer or retreat.")
       .def_readonly("opening", &PickMotion::opening, "Opening of the fingers during the motion [m].")
-      .def_readonly("holding", &PickMotion::holding, "The part is attached during the motion.")
+      .def_readonly("attached", &PickMotion::attached, "The part is attached during the motion.")
       .def_readonly("trajectory", &PickMotion::trajectory, "The arm on its clock, from 0.")
       .def("__repr__", [](const PickMotion& p) {
         return std::string("PickMotion(") + to_string(p.kind) + ", " +
@@ -349,7 +349,7 @@ void bind_plan_result(py::module_& m) {
             const ListedRegions listed(p);
             Intersections found = p.intersections;
             found.robust = listed.counted(std::move(found.robust));
-            found.lost = listed.counted(std::move(found.lost));
+            found.too_small = listed.counted(std::move(found.too_small));
             return found;
           },
           "What the stops were chosen from.")

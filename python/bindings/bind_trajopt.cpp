@@ -10,9 +10,9 @@
 namespace mmgrasp::python {
 namespace {
 
-constexpr char kEventRows[] = "list[mmgrasp._records.DriveByEventRow]";
+constexpr char kEventRows[] = "list[mmgrasp.records.DriveByEventRow]";
 using EventRows = Shown<kEventRows>;
-constexpr char kViolationRows[] = "dict[str, mmgrasp._records.ViolationRow]";
+constexpr char kViolationRows[] = "dict[str, mmgrasp.records.ViolationRow]";
 using ViolationRows = Shown<kViolationRows>;
 constexpr char kPushKeywords[] = "dict[str, typing.Any]";
 using PushKeywords = ShownDict<kPushKeywords>;
@@ -29,12 +29,14 @@ const std::vector<OptionField<DriveByOptions>>& drive_by_fields() {
   static const std::vector<OptionField<O>> fields{
       option<O>("waypoints", &O::waypoints, "waypoints of the whole motion"),
       option<O>("seeds", &O::seeds, "guesses tried until one leads to a solution"),
-      option<O>("solutions", &O::solutions, "solutions compared of one choice of candidates"),
-      option<O>(
-          "grasp_assignments", &O::grasp_assignments,
-          "grasp_assignments of candidates planned; the fastest motion is returned; 1: the choice that looks quickest"),
+      option<O>("solutions", &O::solutions, "solutions compared for one grasp assignment"),
+      option<O>("grasp_assignments", &O::grasp_assignments,
+                "assignments of a candidate to each task that are planned; the fastest motion is returned; 1: only the "
+                "one that "
+                "looks quickest"),
       option<O>("goal_configurations", &O::goal_configurations, "configurations sought per candidate"),
-      option<O>("iterations", &O::iterations, "of all solves; after so many no other begins"),
+      option<O>("iterations", &O::iterations,
+                "iterations of all solves together; once they are spent no other solve begins"),
       option<O>("time_limit", &O::time_limit, "wall-clock cap [s]"),
       option<O>("jerk_time", &O::jerk_time, "accelerations may go from 0 to their limit in no less [s]; 0: no limit"),
       option<O>("collisions", &O::collisions, "the robot keeps clear of the world and of itself"),
@@ -43,12 +45,14 @@ const std::vector<OptionField<DriveByOptions>>& drive_by_fields() {
       option<O>("solver", &O::trajectory, &W::solver, "a name of nlp_solver_names()"),
       option<O>("tolerance", &O::trajectory, &W::tolerance, "relative optimality"),
       option<O>("max_iterations", &O::trajectory, &W::max_iterations,
-                "of one solve; an attempt has at most 1 + refinements"),
-      option<O>("solve_time_limit", &O::trajectory, &W::time_limit, "wall-clock cap of one attempt [s]"),
+                "iterations of one solve; an optimisation takes at most 1 + refinements solves"),
+      option<O>("solve_time_limit", &O::trajectory, &W::time_limit,
+                "wall-clock cap of one optimisation, which has 1 + refinements solves at most [s]"),
       option<O>("smoothing", &O::trajectory, &W::smoothing,
                 "weight of the mean square of accelerations over their limits [s]"),
       option<O>("margin", &O::trajectory, &W::margin, "distance to keep from obstacles and from oneself [m]"),
-      option<O>("look_out", &O::trajectory, &W::look_out, "pairs of bodies nearer than this are constrained [m]"),
+      option<O>("constraint_distance", &O::trajectory, &W::constraint_distance,
+                "pairs of bodies nearer than this are constrained [m]"),
       option<O>("refinements", &O::trajectory, &W::refinements, "times that collision constraints may be added")};
   return fields;
 }
@@ -85,7 +89,7 @@ Poses candidates_argument(const ArrayLike& value) {
   return {pose_argument(value, "T_world_tip")};
 }
 
-std::vector<bool> free_axes(const std::vector<std::string>& names) {
+std::vector<bool> axes_argument(const std::vector<std::string>& names) {
   const std::vector<std::string> known{"x", "y", "z", "roll", "pitch", "yaw"};
   std::vector<bool> free(6, false);
   for (const std::string& name : names) {
@@ -95,7 +99,7 @@ std::vector<bool> free_axes(const std::vector<std::string>& names) {
       free[i] = true;
       found = true;
     }
-    if (!found) throw InvalidInput("free = '" + name + "': must be of x, y, z, roll, pitch, yaw");
+    if (!found) throw InvalidInput("free_axes = '" + name + "': must be of x, y, z, roll, pitch, yaw");
   }
   return free;
 }
@@ -121,32 +125,30 @@ DriveByPush push_argument(const py::dict& given) {
 void bind_drive_by_task(py::module_& m) {
   py::class_<DriveByTask>(
       m, "DriveByTask",
-      "Something the tool does on the way: T_world_tip, (4, 4), or candidates (m, 4, 4) of which "
-      "any will do.\n\n"
-      "    task = mg.DriveByTask(mg.pose([2.0, -0.8, 0.75]), dwell=0.5, free=[\"yaw\"])\n\n"
-      "tolerance: (6,) along x, y, z [m] and about them [rad] of the pose's own frame; free: names "
-      "of axes that do not\n"
-      "matter, of x, y, z, roll, pitch, yaw; max_tool_speed [m/s] at the task; dwell [s] for which "
-      "the tool's pose is\n"
-      "kept, e.g. while a gripper closes; object: name of the world's object that is held "
-      "afterwards: an obstacle for the\n"
-      "whole robot, the open hand included, until then; the fingers alone may touch it during the dwell. What rests on "
-      "something\ncounts as 1 mm higher once it is held.\n\n"
-      "push: a gripper that closes while the hand moves on (P1 4.3): dict of push_grasp's keywords, "
-      "approach (3,), an axis of\n"
-      "the tip's frame, and free_length [m], the straight way before the finger tips reach the "
-      "object. T_world_tip is then\n"
-      "the planned grasp; tolerance, free, max_tool_speed and dwell are left out.")
+      "Something the tool does on the way: T_world_tip, (4, 4), or candidates (m, 4, 4) of which any will do.\n\n"
+      "    task = mg.DriveByTask(mg.pose([2.0, -0.8, 0.75]), dwell=0.5, free_axes=[\"yaw\"])\n\n"
+      "tolerance: (6,) along x, y, z [m] and about them [rad] of the pose's own frame; free_axes: names of axes along "
+      "or\nabout which any error is allowed, of x, y, z, roll, pitch, yaw; max_tool_speed [m/s] at the task; dwell [s] "
+      "for which\nthe tool's pose is kept, e.g. while a gripper closes; object: name of the world's object that is "
+      "attached afterwards:\nan obstacle for the whole robot, the open hand included, until then; the fingers alone "
+      "may "
+      "touch it during the dwell.\nWhat rests on something counts as 1 mm higher once it is attached.\n\n"
+      "push: a gripper that closes while the hand moves on (P1 4.3): dict of push_grasp's keywords, approach (3,), an "
+      "axis of\nthe tip's frame, and free_length [m], the straight way before the finger tips reach the object. "
+      "T_world_tip is then\nthe planned grasp; tolerance, free_axes, max_tool_speed and dwell are left out.")
       .def(py::init([](const ArrayLike& T_world_tip, const OptionalArray& tolerance,
-                       const std::vector<std::string>& free, const OptionalNumber& max_tool_speed, double dwell,
-                       const std::string& object, const std::optional<PushKeywords>& push) {
+                       const std::vector<std::string>& free_axes, const OptionalNumber& max_tool_speed, double dwell,
+                       const std::string& object, const std::optional<PushKeywords>& push,
+                       const NoMoreKeywords& unknown) {
+             refuse_unknown("DriveByTask", unknown,
+                            {"T_world_tip", "tolerance", "free_axes", "max_tool_speed", "dwell", "object", "push"});
              DriveByTask task;
              task.candidates = candidates_argument(T_world_tip);
              if (!tolerance.is_none()) task.tolerance = vector_argument(tolerance, "tolerance", 6);
              for (int i = 0; i < 6; ++i) {
                if (task.tolerance[i] < 0) throw InvalidInput("tolerance: entries must be at least 0");
              }
-             task.free = free_axes(free);
+             task.free_axes = axes_argument(free_axes);
              if (!max_tool_speed.is_none()) {
                task.max_tool_speed = finite_argument(py::cast<double>(max_tool_speed), "max_tool_speed");
              }
@@ -158,15 +160,16 @@ void bind_drive_by_task(py::module_& m) {
              return task;
            }),
            py::arg("T_world_tip"), py::kw_only(), py::arg("tolerance") = py::none(),
-           py::arg("free") = std::vector<std::string>{}, py::arg("max_tool_speed") = py::none(), py::arg("dwell") = 0.0,
-           py::arg("object") = "", py::arg("push") = py::none(),
+           py::arg("free_axes") = std::vector<std::string>{}, py::arg("max_tool_speed") = py::none(),
+           py::arg("dwell") = 0.0, py::arg("object") = "", py::arg("push") = py::none(),
            "The class says what the arguments mean; raises InvalidInput naming one that breaks its rule.")
       .def_property_readonly(
           "candidates", [](const DriveByTask& t) { return to_array(t.candidates); }, "(m, 4, 4)")
       .def_readonly("max_tool_speed", &DriveByTask::max_tool_speed,
                     "Fastest tool at the task [m/s]; infinite: no limit.")
       .def_readonly("dwell", &DriveByTask::dwell, "Time for which the tool's pose is kept [s].")
-      .def_readonly("object", &DriveByTask::object, "Name of the world's object that is held afterwards; empty: none.")
+      .def_readonly("object", &DriveByTask::object,
+                    "Name of the world's object that is attached afterwards; empty: none.")
       .def_property_readonly(
           "push",
           [](const DriveByTask& t) -> OptionalPush {
@@ -347,7 +350,7 @@ void bind_trajopt(py::module_& m) {
                         "solve"_a = py::cpp_function(solve));
       },
       py::arg("group"), py::kw_only(), py::arg("start"), py::arg("tasks"), py::arg("goal"), py::arg("waypoints") = 35,
-      "Where the first attempt begins, for benchmarks against other optimisers; None when a task is out of reach. "
+      "The guess of the first seed, for benchmarks against other optimisers; None when a task is out of reach. "
       "solve() "
       "takes it from there, judging included: whether it is solved, the duration, processor seconds that judging once "
       "more "

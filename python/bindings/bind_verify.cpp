@@ -51,11 +51,11 @@ void bind_checked_parts(py::module_& m) {
            py::arg("joint"), py::arg("closed"), py::arg("open"),
            "Values of the joint with the fingers `closed` and fully `open` [rad or m].");
   py::class_<CheckedMotion>(m, "CheckedMotion", "One timed arm motion of a pick.")
-      .def(py::init([](std::string kind, double opening, bool holding, std::vector<double> times,
+      .def(py::init([](std::string kind, double opening, bool attached, std::vector<double> times,
                        const ArrayLike& positions, const ArrayLike& velocities, const OptionalArray& accelerations) {
              return CheckedMotion{std::move(kind),
                                   opening,
-                                  holding,
+                                  attached,
                                   std::move(times),
                                   rows_argument(positions, "positions"),
                                   rows_argument(velocities, "velocities"),
@@ -63,9 +63,10 @@ void bind_checked_parts(py::module_& m) {
                                       ? std::vector<Eigen::VectorXd>{}
                                       : rows_argument(accelerations.cast<ArrayLike>(), "accelerations")};
            }),
-           py::arg("kind"), py::arg("opening"), py::arg("holding"), py::arg("times"), py::arg("positions"),
+           py::arg("kind"), py::arg("opening"), py::arg("attached"), py::arg("times"), py::arg("positions"),
            py::arg("velocities"), py::arg("accelerations") = py::none(),
-           "`kind`: transit, approach, lift, transfer or retreat; `opening` of the fingers [m]; `holding` the part; "
+           "`kind`: transit, approach, lift, transfer or retreat; `opening` of the fingers [m]; `attached`: the part "
+           "is; "
            "`times` "
            "(k,) [s];\n`positions`, `velocities` and, where given, `accelerations` (k, n) of the arm's joints.");
   py::class_<CheckedPick>(m, "CheckedPick", "One pick of a plan.")
@@ -97,9 +98,9 @@ void bind_checked_parts(py::module_& m) {
              return CheckedRegion{std::move(tray), flags_argument(cells, "cells")};
            }),
            py::arg("tray"), py::arg("cells"), "`cells`: zeros and ones, (headings, ny, nx) flattened.");
-  py::class_<CheckedLegFigures>(m, "CheckedLegFigures", "What a plan says about a leg of its route.")
+  py::class_<CheckedLegValues>(m, "CheckedLegValues", "What a plan says about a leg of its route.")
       .def(py::init([](double length, double turning, double duration) {
-             return CheckedLegFigures{length, turning, duration};
+             return CheckedLegValues{length, turning, duration};
            }),
            py::arg("length"), py::arg("turning"), py::arg("duration"),
            "Length [m], sum of absolute heading changes [rad], duration [s].");
@@ -195,7 +196,7 @@ void bind_plan_to_check(py::module_& m) {
       .def_readwrite("drive_by", &PlanToCheck::drive_by, "What of route and picks is done in passing.")
       .def_readwrite("closing_speed", &PlanToCheck::closing_speed, "Of the opening [m/s], for drive_by.")
       .def_readwrite("lower_bound", &PlanToCheck::lower_bound, "Least number of stops, as the plan says.")
-      .def_readwrite("route_figures", &PlanToCheck::route_figures, "One a leg; empty: not given.")
+      .def_readwrite("leg_values", &PlanToCheck::leg_values, "One a leg; empty: not given.")
       .def_readwrite("intersections", &PlanToCheck::intersections, "Places that the plan says lie in several regions.")
       .def_readwrite("robustness_rate", &PlanToCheck::robustness_rate, "As the plan says; NaN: not given.");
 }

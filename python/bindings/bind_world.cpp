@@ -149,8 +149,11 @@ void bind_world(py::module_& m) {
           py::arg("name"), py::arg("field").none(false), py::arg("pose") = py::none(), py::kw_only(),
           py::arg("resolution") = FieldObstacle().resolution,
           py::arg("unknown_is_free") = FieldObstacle().unknown_is_free,
-          "What a distance field holds, at T_world_field (4, 4). A body is free only where the field proves it, and is "
-          "called\nso when it is farther away than twice the field's error and `resolution` [m].")
+          "What a distance field holds, at T_world_field (4, 4): a mesh's or a grid's; maps of cameras by add_sdf. A "
+          "body "
+          "is\nfree only where the field proves it, and is called so when it is farther away than twice the field's "
+          "error "
+          "and\n`resolution` [m].")
       .def("add_floor", &add_floor, py::arg("group"), py::arg("height") = 0.0,
            "Level ground, the object \"floor\": everything below z = `height` [m] is solid, without an end. What the "
            "joints of\n`group` move (but a base's x, y and theta) must keep off it, and so must what is attached; all "

@@ -9,7 +9,7 @@
 namespace mmgrasp::python {
 
 namespace annotations {
-inline constexpr char kMotionMessage[] = "mmgrasp._records.MotionMessage";
+inline constexpr char kMotionMessage[] = "mmgrasp.records.MotionMessage";
 }
 using MotionMessage = Shown<annotations::kMotionMessage>;
 

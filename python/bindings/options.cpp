@@ -14,11 +14,14 @@ const std::map<std::string, std::string> kRenamed = {{"attempt_time_limit", "sol
                                                      {"attempts", "seeds"},
                                                      {"choices", "grasp_assignments"},
                                                      {"edge_step", "joint_step"},
+                                                     {"free", "free_axes"},
                                                      {"gap", "clearance"},
                                                      {"held_only", "attached_only"},
                                                      {"improved", "on_solution"},
+                                                     {"look_out", "constraint_distance"},
                                                      {"max_joint_step", "jump_threshold"},
                                                      {"max_samples", "max_iterations"},
+                                                     {"scene", "world"},
                                                      {"stands", "goal_configurations"},
                                                      {"tool_cone", "orientation_constraint"}};
 
@@ -26,8 +29,8 @@ const std::map<std::string, std::string> kRenamed = {{"attempt_time_limit", "sol
 
 std::string nearest_name(const std::string& wrong, const std::vector<std::string>& known) {
   const auto renamed = kRenamed.find(wrong);
-  // These two are arguments of their own and not among the options.
-  const bool argument = wrong == "improved" || wrong == "tool_cone";
+  // These are arguments of their own and not among the options.
+  const bool argument = wrong == "improved" || wrong == "tool_cone" || wrong == "scene";
   if (renamed != kRenamed.end() && (argument || std::find(known.begin(), known.end(), renamed->second) != known.end()))
     return "; it is called " + renamed->second + " now";
   const py::list matches = py::module_::import("difflib").attr("get_close_matches")(wrong, known, 1, 0.5);
@@ -35,6 +38,13 @@ std::string nearest_name(const std::string& wrong, const std::vector<std::string
   std::string all = "; known are ";
   for (std::size_t i = 0; i < known.size(); ++i) all += (i ? ", " : "") + known[i];
   return all;
+}
+
+void refuse_unknown(const char* function, const py::kwargs& unknown, const std::vector<std::string>& known) {
+  for (const auto& [key, value] : unknown) {
+    const std::string name = py::cast<std::string>(key);
+    throw InvalidInput(std::string(function) + "(" + name + "=...): unknown keyword" + nearest_name(name, known));
+  }
 }
 
 void refuse_value(const std::string& name, const py::handle& value, const char* rule) {

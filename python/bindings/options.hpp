@@ -2,6 +2,7 @@
 
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
+#include <pybind11/typing.h>
 
 #include <functional>
 #include <string>
@@ -25,6 +26,9 @@ struct OptionField {
 };
 
 std::string nearest_name(const std::string& wrong, const std::vector<std::string>& known);
+/// Keywords of a constructor beside those named; refuse_unknown() says what was probably meant.
+using NoMoreKeywords = py::KWArgs<py::typing::Never>;
+void refuse_unknown(const char* function, const py::kwargs& unknown, const std::vector<std::string>& known);
 [[noreturn]] void refuse_value(const std::string& name, const py::handle& value, const char* rule);
 /// A function that is called on the way, or None.
 py::object function_argument(py::object value, const char* name);

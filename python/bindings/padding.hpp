@@ -7,12 +7,12 @@ namespace mmgrasp::python {
 
 namespace annotations {
 inline constexpr char kPadding[] =
-    "float | mmgrasp._records.WorldPadding | collections.abc.Mapping[str, float | collections.abc.Mapping[str, "
+    "float | mmgrasp.records.WorldPadding | collections.abc.Mapping[str, float | collections.abc.Mapping[str, "
     "float]]";
 inline constexpr char kOptionalPadding[] =
-    "float | mmgrasp._records.WorldPadding | collections.abc.Mapping[str, float | collections.abc.Mapping[str, "
+    "float | mmgrasp.records.WorldPadding | collections.abc.Mapping[str, float | collections.abc.Mapping[str, "
     "float]] | None";
-inline constexpr char kPaddingDict[] = "mmgrasp._records.WorldPadding";
+inline constexpr char kPaddingDict[] = "mmgrasp.records.WorldPadding";
 }  // namespace annotations
 
 using PaddingLike = Shown<annotations::kPadding>;

@@ -3,9 +3,11 @@
 Units are SI and radians; poses are float64 (4, 4) arrays named T_parent_child. Misuse raises Error (InvalidInput, also a
 ValueError; IoError, also an OSError); "no solution" is a value: look at a result's `outcome`.
 
-Here are the names that nearly every program needs. Everything else is in a room of its own: `mmgrasp.robot`, `.collision`,
-`.planning`, `.grasping`, `.base`, `.mapping`, `.optim`, `.gripper_design`, `.verify`; `.part_supply` and `.scenario` for the main job. Extras are imported
-by name: `mmgrasp.frames` (folders of depth images), `.scan` (maps made of them), `.sim` (physics), `.viz` (pictures), `.cluster` (many
+P1, P2 and P3 in docstrings are the theses that docs/bibliography.md names, with the source of every method.
+
+Here are the names that nearly every program needs. Everything else is in a submodule: `mmgrasp.robot`, `.collision`,
+`.planning`, `.grasping`, `.base`, `.mapping`, `.optim`, `.gripper_design`, `.verify`; `.part_supply` and `.scenario` for the main job. Types of the dicts in
+results are in `mmgrasp.records`. Extras are imported by name: `mmgrasp.frames` (folders of depth images), `.scan` (maps made of them), `.sim` (physics), `.viz` (pictures), `.cluster` (many
 processes), `.problems` (benchmarks' problems), `.reproduce`.
 """
 

@@ -46,7 +46,7 @@ class DriveByOptions(TypedDict, total=False):
     solve_time_limit: float
     smoothing: float
     margin: float
-    look_out: float
+    constraint_distance: float
     refinements: int
 
 

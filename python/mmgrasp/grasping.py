@@ -75,6 +75,7 @@ from ._core import (
     follow_object_path as follow_object_path,
     FeasibleGrasp as FeasibleGrasp,
     GraspOptimum as GraspOptimum,
+    default_grasp_search as default_grasp_search,
     grasp_search_names as grasp_search_names,
     optimize_grasp as optimize_grasp,
     population_search_names as population_search_names,

@@ -42,6 +42,7 @@ from ._core import (
     plan_manipulation as plan_manipulation,
     manipulation_planner_names as manipulation_planner_names,
     ManipulationResult as ManipulationResult,
+    ManipulationStats as ManipulationStats,
     GraspReport as GraspReport,
     Improvement as Improvement,
     SearchTree as SearchTree,

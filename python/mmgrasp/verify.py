@@ -10,7 +10,7 @@ from ._core.verify import (
     CheckedGrasp as CheckedGrasp,
     CheckedGrid as CheckedGrid,
     CheckedIntersection as CheckedIntersection,
-    CheckedLegFigures as CheckedLegFigures,
+    CheckedLegValues as CheckedLegValues,
     CheckedMotion as CheckedMotion,
     CheckedPart as CheckedPart,
     CheckedPick as CheckedPick,

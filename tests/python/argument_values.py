@@ -362,7 +362,7 @@ OTHERS: dict[str, Any] = {
     "times": lambda: [0.0, 1.0],
     "stop_times": lambda: [1.0, 2.0],
     "robots": lambda: 1,
-    "holding": lambda: False,
+    "attached": lambda: False,
     "kind": lambda: "approach",
     "name": lambda: "fresh",
     "World.add_mesh.path": lambda: CORPUS / "stl" / "tetrahedron.stl",

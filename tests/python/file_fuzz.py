@@ -9,7 +9,7 @@ from pathlib import Path
 
 import mmgrasp as mg
 from mmgrasp.documents.reading import read_json
-from mmgrasp.part_supply.figures import check_figures
+from mmgrasp.part_supply.consistency import check_consistency
 from mmgrasp.part_supply.plan_file import check_form, check_names
 from mmgrasp.part_supply.plan_reader import plan_to_check
 
@@ -52,7 +52,7 @@ def read_plan_whole(path: Path) -> None:
     root = read_json(path).root
     check_form(root)
     plan_to_check(root)
-    check_figures(root.raw)
+    check_consistency(root.raw)
     check_names(root)
 
 

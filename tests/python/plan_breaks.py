@@ -127,7 +127,7 @@ def fingers_open_while_holding(plan: dict[str, Any]) -> None:
 
 
 def not_holding(plan: dict[str, Any]) -> None:
-    motion(plan, "transfer")["holding"] = False
+    motion(plan, "transfer")["attached"] = False
 
 
 def time_runs_backwards(plan: dict[str, Any]) -> None:
@@ -208,7 +208,7 @@ def widths_scaled(plan: dict[str, Any], factor: float) -> None:
             grasp["opening"] *= factor
     for pick in plan["picks"]:
         for m in pick["motions"]:
-            if m["holding"]:
+            if m["attached"]:
                 m["opening"] *= factor
 
 

@@ -33,7 +33,7 @@ def box(x: float, y: float, z: float) -> list[dict[str, Any]]:
 def motion(kind: str, start: list[float], end: list[float], holding: bool, seconds: float) -> dict[str, Any]:
     """A straight motion from rest to rest with two samples."""
     zero = [0.0, 0.0]
-    return {"kind": kind, "opening": 0.05, "holding": holding, "times": [0.0, seconds], "positions": [start, end],
+    return {"kind": kind, "opening": 0.05, "attached": holding, "times": [0.0, seconds], "positions": [start, end],
             "velocities": [zero, zero], "accelerations": [zero, zero]}  # fmt: skip
 
 
@@ -70,7 +70,7 @@ def plan_by_hand() -> dict[str, Any]:
         {"stop": 0, "tray": p["tray"], "part": p["name"], "grasp": 0, "motions": copy.deepcopy(motions)} for p in parts
     ]
     return {
-        "format": "mmgrasp-plan", "version": 3, "mmgrasp": "0.0.0", "outcome": "solved",
+        "format": "mmgrasp-plan", "version": 4, "mmgrasp": "0.0.0", "outcome": "solved",
         "scenario": {
             "name": "by hand", "source": "scenario.yaml",
             "robot": {"urdf": URDF, "srdf": "", "base": "diff_drive", "base_limits": {}, "meshes": []},
@@ -91,7 +91,7 @@ def plan_by_hand() -> dict[str, Any]:
         "regions": [region("A", range(6, 14), 5, 15), region("B & C", range(8, 16), 6, 14)],
         "intersections": [{"trays": ["A"], "heading": 0, "centre": [1.0, 1.0], "radius": 0.4, "cells": 80},
                           {"trays": ["A", "B & C"], "heading": 0, "centre": [1.0, 1.1], "radius": 0.3, "cells": 48}],
-        "lost_intersections": [],
+        "too_small_intersections": [],
         "stops": [{"pose": [1.0, 1.0, 0.0], "radius": 0.2, "trays": ["A", "B & C"], "intersection": 1}],
         "lower_bound": 1, "proven_minimal": True,
         "route": [{"poses": [[0.3, 0.3, 0.0], [0.3, 0.3, 0.7854], [1.0, 1.0, 0.7854], [1.0, 1.0, 0.0]], "length": 0.99,

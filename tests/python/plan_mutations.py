@@ -15,7 +15,7 @@ from field_changes import Harmless, report, try_out
 from mmgrasp._core import verify as checks
 from mmgrasp._files import ASSETS
 from mmgrasp.documents.reading import Document
-from mmgrasp.part_supply.figures import check_figures
+from mmgrasp.part_supply.consistency import check_consistency
 from mmgrasp.part_supply.plan_file import check_form
 from mmgrasp.part_supply.plan_reader import plan_to_check
 from mmgrasp.part_supply.plan_writer import scenario_to_dict
@@ -52,7 +52,7 @@ def refuses(expected: dict[str, Any] | None, samples: int = 60) -> Callable[[dic
             if plan["outcome"] != "solved":
                 return True
             to_check = plan_to_check(root)
-            if check_figures(plan):
+            if check_consistency(plan):
                 return True
         except mg.Error:
             return True

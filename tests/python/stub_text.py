@@ -131,7 +131,7 @@ def with_imports(stub: str) -> str:
     """Every module that the annotations name, imported once."""
     wanted = {
         name
-        for name in ("collections.abc", "mmgrasp._records", "os", "typing")
+        for name in ("collections.abc", "mmgrasp.records", "os", "typing")
         if re.search(rf"\b{re.escape(name)}\.", stub)
     }
     missing = sorted(name for name in wanted if f"\nimport {name}\n" not in stub)

@@ -221,9 +221,29 @@ def test_the_optimum_is_proven_to_a_gap() -> None:
         assert other.path.cost >= best.lower_bound
         assert (other.lower_bound, other.gap, other.boxes) == (0, 1, 0)
     assert grasp_search_names() == [*population_search_names(), "branch_and_bound"]
-    for wrong, rule in (("max_gap", 0.0), ("max_boxes", 0), ("time_limit", 0.0), ("threads", -1)):
+    for wrong, rule in (
+        ("max_gap", 0.0),
+        ("max_boxes", 0),
+        ("time_limit", 0.0),
+        ("threads", -1),
+        ("front_searches", -1),
+    ):
         with pytest.raises(mg.InvalidInput, match=wrong):
             optimize_grasp(problem, pipe, algorithm="branch_and_bound", **{wrong: rule})  # type: ignore[arg-type]
+
+
+def test_front_searches_find_what_the_search_for_cost_passes_by() -> None:
+    once, more = (search("Pipe1", max_evaluations=300, seed=1, front_searches=n) for n in (0, 3))
+    assert more.evaluations == 4 * once.evaluations == 1200
+    assert list(more.history) == list(once.history)
+
+    def least(found: Any) -> np.ndarray:
+        rows = [(f.joint_motion, f.deflection, f.force_manipulability) for f in found.feasible]
+        return np.asarray(np.array(rows).min(axis=0))
+
+    assert np.all(least(more) <= least(once)) and np.any(least(more) < least(once))
+    assert more.path.cost <= once.path.cost
+    assert np.all(np.diff([more.feasible[i].joint_motion for i in more.front]) >= 0)
 
 
 def test_no_grasp_at_a_millimetre_and_a_degree_undercuts_the_proven_one() -> None:
@@ -303,3 +323,38 @@ def test_a_base_that_cannot_go_sideways_is_refused() -> None:
     pipe, _ = pipe1()
     with pytest.raises(mg.InvalidInput, match="diff_drive"):
         ObjectPathProblem(group, mg.World(), pipe.shapes(), np.array([np.eye(4)] * 2))
+
+
+PYNITE = json.loads((Path(__file__).with_name("pynite_frames.json")).read_text())["frames"]
+
+
+@pytest.mark.parametrize("plain", PYNITE)
+def test_frames_bend_as_pynite_says(plain: dict[str, Any]) -> None:
+    """Tubes and turned rectangles, masses, forces and moments on nodes (benchmarks/structure/run.py --store)."""
+    make: dict[str, Any] = {"round": round_section, "rectangle": rectangular_section}
+    metal = BeamMaterial(8960, 110e9, 40e9)
+    members = [
+        BeamMember(m["nodes"][0], m["nodes"][1], make[m["shape"][0]](*m["shape"][1:]), metal, m["y"])
+        for m in plain["members"]
+    ]
+    frame = BeamFrame(plain["nodes"], members, [NodeLoad(**load) for load in plain["loads"]])
+    held = next(i for i, m in enumerate(members) if plain["fixed"] in m.nodes)
+    a, b = members[held].nodes
+    length = float(np.linalg.norm(frame.nodes[a] - frame.nodes[b]))
+    support = BeamSupport(held, 0.0 if plain["fixed"] == a else length)
+    state = SupportedFrame(frame, support).state(plain["gravity"])
+    pairs = (
+        (state.nodes, np.array(plain["answer"]["nodes"])),
+        (state.reactions, np.array([plain["answer"]["reaction"]])),
+    )
+    for ours, theirs in pairs:
+        for part in (slice(0, 3), slice(3, 6)):  # displacements and rotations, forces and moments
+            np.testing.assert_allclose(
+                ours[:, part], theirs[:, part], rtol=0, atol=1e-8 * np.abs(theirs[:, part]).max()
+            )
+
+
+def test_the_frames_of_pynite_have_all_kinds() -> None:
+    shapes = {m["shape"][0] for plain in PYNITE for m in plain["members"]}
+    assert shapes == {"round", "rectangle"} and len(PYNITE) == 16
+    assert any(plain["loads"] for plain in PYNITE)

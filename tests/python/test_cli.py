@@ -86,7 +86,7 @@ def test_plan_in_passing(small_path: Path, tmp_path: Path, capfd: pytest.Capture
         ("[]", "format"),
         ('{"format": "mmgrasp-scenario"}', "mmgrasp-plan"),
         ('{"format": "mmgrasp-plan", "version": 7}', "version"),
-        ('{"format": "mmgrasp-plan", "version": 3, "mmgrasp": "0", "outcome": "solved"}', "scenario"),
+        ('{"format": "mmgrasp-plan", "version": 4, "mmgrasp": "0", "outcome": "solved"}', "scenario"),
     ],
 )
 def test_verify_refuses_what_is_no_plan(

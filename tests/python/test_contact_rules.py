@@ -213,7 +213,7 @@ def test_a_scenario_with_padding(small: dict[str, Any], write: Callable[..., Pat
     scenario["padding"] = {"links": 0.005, "by_name": {"gripper": 0}}
     loaded = mg.load_scenario(write(scenario))
     assert loaded.world.padding["links"] == 0.005
-    assert loaded.problem().scene.padding["by_name"] == {"gripper": 0}
+    assert loaded.problem().world.padding["by_name"] == {"gripper": 0}
     plan = mg.plan_part_supply(loaded)
     assert plan.outcome == mg.Outcome.solved, plan
     assert plan.to_dict()["scenario"]["padding"]["links"] == 0.005

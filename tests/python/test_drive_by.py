@@ -176,6 +176,7 @@ def test_best_iterate_when_time_ends(robot: mg.Robot, group: mg.robot.JointGroup
         ({"waypoints": 3}, "waypoints"),
         ({"solver": "snopt"}, "ipopt, slsqp"),
         ({"smooting": 1}, "smoothing"),
+        ({"look_out": 0.2}, "it is called constraint_distance now"),
         ({"tolerance": 0}, "tolerance"),
         ({"iterations": 0}, "iterations"),
         ({"grasp_assignments": 0}, "grasp_assignments"),
@@ -190,7 +191,9 @@ def test_bad_input(robot: mg.Robot, group: mg.robot.JointGroup, change: dict[str
 
 def test_bad_tasks() -> None:
     with pytest.raises(mg.InvalidInput, match="roll"):
-        mg.DriveByTask(TASK, free=["rol"])
+        mg.DriveByTask(TASK, free_axes=["rol"])
+    with pytest.raises(mg.InvalidInput, match="free_axes now"):
+        mg.DriveByTask(TASK, free=["roll"])  # type: ignore[call-arg]
     with pytest.raises(mg.InvalidInput, match="max_tool_speed"):
         mg.DriveByTask(TASK, max_tool_speed=0)
     with pytest.raises(mg.InvalidInput, match="dwell"):

@@ -15,7 +15,7 @@ import pytest
 import mmgrasp as mg
 from conftest import ASSETS
 from mmgrasp import sim
-from mmgrasp.part_supply.figures import check_figures
+from mmgrasp.part_supply.consistency import check_consistency
 from mmgrasp.part_supply.plan_file import plan_schema
 from mmgrasp.viz.report import report_html
 from mmgrasp.viz.timeline import Timeline
@@ -120,17 +120,17 @@ def test_what_is_wrong_in_passing_is_found(content: dict[str, Any]) -> None:
     assert "drive-by-pick" in codes(plan)
     plan, motion = spoiled(content)
     motion["opening"] += 0.001
-    assert [f.where for f in check_figures(plan)] == ["drive_by.motions[0].opening"]
+    assert [f.where for f in check_consistency(plan)] == ["drive_by.motions[0].opening"]
     plan, motion = spoiled(content)
     plan["drive_by"]["motions"].append(motion)
-    assert [f.where for f in check_figures(plan)] == ["drive_by.motions"]
+    assert [f.where for f in check_consistency(plan)] == ["drive_by.motions"]
 
 
 def test_a_leg_on_which_the_base_stands_is_found(content: dict[str, Any]) -> None:
     plan, _ = spoiled(content)
-    assert check_figures(plan) == []
+    assert check_consistency(plan) == []
     plan["route"][0]["poses"].insert(1, plan["route"][0]["poses"][0])
-    assert [f.where for f in check_figures(plan)] == ["route[0].poses"]
+    assert [f.where for f in check_consistency(plan)] == ["route[0].poses"]
 
 
 def test_the_whole_round_is_one_motion(passing: mg.part_supply.DriveByPlan) -> None:
@@ -143,7 +143,7 @@ def test_the_whole_round_is_one_motion(passing: mg.part_supply.DriveByPlan) -> N
     closing = next(e for e in motion.gripper if e["command"] == "close")
     assert closing["object"] == done.part
     assert closing["time"] == pytest.approx(done.close_at)
-    opened = next(m.opening for m in passing.plan.picks[done.pick].motions if m.holding)
+    opened = next(m.opening for m in passing.plan.picks[done.pick].motions if m.attached)
     assert closing["opening"] == opened
     at = int(np.searchsorted(motion.times, closing["time"]))
     assert np.linalg.norm(motion.base_twists[at, :2]) > 0.02
@@ -205,7 +205,7 @@ def test_physics_takes_the_part(passing: mg.part_supply.DriveByPlan, small_plan:
     (done,) = passing.picks
     problem, setup = small_plan.scenario.problem(), small_plan.scenario.setup
     parts = [sim.SimPart(p.name, p.shapes, p.T_world_part, mass=0.1) for p in problem.trays[0].parts]
-    trial = sim.Simulation(setup.robot, problem.scene, parts, gripper=setup.gripper, joints=setup.other_joints)
+    trial = sim.Simulation(setup.robot, problem.world, parts, gripper=setup.gripper, joints=setup.other_joints)
     # At half speed: plans know limits of joints, not of their motors, which cannot follow this one at full speed.
     how: dict[str, Any] = {
         "close_at": done.close_at,

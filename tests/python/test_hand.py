@@ -100,20 +100,20 @@ def test_planners_set_the_posture_of_a_grasp() -> None:
         mg.ManipulationProblem(arm, world, bead, *ends, [mg.Grasp(np.eye(4), posture=[0, 1])], gripper=hand)
 
 
-def test_quality_is_the_product_of_its_parts() -> None:
+def test_quality_is_the_product_of_its_factors() -> None:
     _, _, gripper = pipe_robot("tm14like")
     grasps = mg.grasping.sample_grasps([mg.LinkShape(mg.Box([0.04, 0.05, 0.08]))], gripper)
     assert grasps
     for grasp in grasps:
-        assert set(grasp.parts) == {"alignment", "centring", "support", "insertion", "clearance"}
-        factors = [1 - weight + weight * value for value, weight in grasp.parts.values()]
+        assert set(grasp.quality_factors) == {"alignment", "centring", "support", "insertion", "clearance"}
+        factors = [1 - weight + weight * value for value, weight in grasp.quality_factors.values()]
         assert grasp.quality == pytest.approx(np.prod(factors), rel=1e-15)
         assert isinstance(grasp.provenance, mg.grasping.ContactPairProvenance)
         assert grasp.to_dict()["provenance"]["sampler"] == "contact_pairs"
     given = mg.Grasp(np.eye(4), 0.03, cost=1.5, quality=0.25)
     assert given.provenance is None
     assert given.to_dict() == {
-        "T_object_hand": np.eye(4).tolist(), "opening": 0.03, "cost": 1.5, "quality": 0.25, "parts": {}, "posture": [],
+        "T_object_hand": np.eye(4).tolist(), "opening": 0.03, "cost": 1.5, "quality": 0.25, "quality_factors": {}, "posture": [],
         "provenance": None,
     }  # fmt: skip
 

@@ -80,7 +80,7 @@ def test_the_bar_is_carried_from_start_to_goal() -> None:
     assert result.outcome == mg.Outcome.solved
     grasp = GRASPS[result.grasp_index]
     assert result.cost == pytest.approx(np.linalg.norm(np.diff(result.path, axis=0), axis=1).sum(), abs=1e-12)
-    assert result.stats["roadmap_bound"] == pytest.approx(result.cost)
+    assert result.stats.roadmap_bound == pytest.approx(result.cost)
     assert result.lower_bound < result.cost
     assert improvements[-1].cost == result.cost and improvements[-1].grasp == result.grasp_index
     assert np.array_equal(improvements[-1].path, result.path)
@@ -115,7 +115,7 @@ def test_variants_threads_and_a_loaded_roadmap_agree(tmp_path: Path, batch: int)
             problem(), roadmap=loaded, batch=batch, threads=threads, ik_solutions=2, time_limit=100, shorten=False
         )
         assert found.cost == pytest.approx(expected.cost, abs=1e-12)
-        assert found.stats["roadmap_seconds"] == 0
+        assert found.stats.roadmap_seconds == 0
 
 
 def test_a_roadmap_tells_of_itself() -> None:
@@ -132,8 +132,8 @@ def test_a_roadmap_tells_of_itself() -> None:
 
 def test_stages_and_a_roadmap_in_pieces_are_told() -> None:
     result = mg.plan_manipulation(problem(), **OPTIONS)
-    assert [*result.stats["stages"]] == list(dict.fromkeys(better.stage for better in result.improvements))
-    last = result.stats["stages"][result.improvements[-1].stage]
+    assert [*result.stats.stages] == list(dict.fromkeys(better.stage for better in result.improvements))
+    last = result.stats.stages[result.improvements[-1].stage]
     assert last["cost"] == result.cost and last["last_seconds"] == result.improvements[-1].seconds
     assert result.warnings == [] and "warning" not in repr(result)
     torn = mg.plan_manipulation(problem(), **{**OPTIONS, "gamma": 0.5})
@@ -284,9 +284,9 @@ def test_grasps_searched_are_counted_once() -> None:
     found = mg.plan_manipulation(problem(), **{**OPTIONS, "shorten": True}, refinements=20)
     reached = [report for report in found.grasps if report.start_solutions and report.goal_solutions]
     searched = [report for report in found.grasps if report.searched]
-    assert 0 < found.stats["grasps_searched"] == len(searched) <= len(reached) <= 20
+    assert 0 < found.stats.grasps_searched == len(searched) <= len(reached) <= 20
     # Refinement rounds search again what was searched before.
-    assert found.stats["graph_searches"] > 20
+    assert found.stats.graph_searches > 20
 
 
 @pytest.mark.parametrize(

@@ -70,7 +70,7 @@ def test_any_object_is_picked_like_a_part(
     problem, database = scenario.problem(), scenario.reach_database()
     picked = small_plan.picks[-1]  # the last one: no other target is in its way
     part = problem.trays[picked.tray].parts[picked.part]
-    world = problem.scene.copy()
+    world = problem.world.copy()
     world.add("thing", part.shapes, part.T_world_part)
     stop = small_plan.stops[picked.stop].pose
     place = part.T_world_part.copy()

@@ -193,7 +193,7 @@ def test_trees_of_good_paths_join_few_of_the_vertices_within_a_step() -> None:
             )
             for seed in range(1, 6)
         ]
-        edges.append(sum(run.stats["edges_checked_attached"] for run in runs))
+        edges.append(sum(run.stats.edges_checked_attached for run in runs))
         excess.append(np.mean([run.cost / run.lower_bound - 1 for run in runs]))
     assert edges[0] < edges[1] / 2
     assert excess[0] < excess[1] + 0.002, excess

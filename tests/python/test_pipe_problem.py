@@ -20,18 +20,20 @@ import yaml
 import mmgrasp as mg
 from mmgrasp import _core
 from mmgrasp._files import ASSETS
+from mmgrasp._files import shipped as shipped_file
+from mmgrasp._turns import rotation_about, rotation_vector
 from mmgrasp.cli import main
 from mmgrasp.grasping import BeamSupport, SupportedFrame, optimize_grasp
 from mmgrasp.pipes import PipePlan, arc_poses, line_poses, load_pipe_problem, plan_pipe, planning
-from mmgrasp.pipes.path_section import rotation_about, rotation_vector
 from mmgrasp.pipes.planning import _dense
+from mmgrasp.viz.pipe_report import pipe_report_html
 
 SHIPPED = ASSETS / "pipes" / "pipe1.yaml"
 
 
 def shipped() -> dict[str, Any]:
     content: dict[str, Any] = yaml.safe_load(SHIPPED.read_text())
-    content["options"]["max_evaluations"] = 300
+    content["options"] |= {"max_evaluations": 300, "algorithm": "bees"}  # branch and bound takes 11 s
     return content
 
 
@@ -239,6 +241,16 @@ def test_the_motion_carries_the_pipe_through_every_pose(plan: PipePlan) -> None:
         assert checker.edge_is_free(a, b)
 
 
+def test_gravity_is_the_librarys_unless_the_file_says(tmp_path: Path) -> None:
+    content = shipped()
+    T = mg.pose([1, 2, 3], rpy=[0.3, -0.5, 0.7])
+    assert np.allclose(
+        load_pipe_problem(written(tmp_path, content)).gravity_in_pipe(T), T[:3, :3].T @ [0, 0, -9.81], atol=1e-12
+    )
+    content["options"]["gravity"] = 1.62
+    assert np.linalg.norm(load_pipe_problem(written(tmp_path, content)).gravity_in_pipe(T)) == pytest.approx(1.62)
+
+
 def test_the_sags_are_the_frames(plan: PipePlan) -> None:
     assert plan.grasp is not None
     for row, T in zip(plan.sags, plan.problem.T_world_pipe, strict=True):
@@ -252,8 +264,27 @@ def test_the_sags_are_the_frames(plan: PipePlan) -> None:
 
 
 def test_it_beats_the_grasps_it_is_compared_with(plan: PipePlan) -> None:
-    (other,) = plan.compared
-    assert other.path is None or other.cost >= plan.optimum.path.cost
+    blocked, other = plan.compared
+    assert blocked.path is None
+    assert other.path is not None and other.cost >= plan.optimum.path.cost
+
+
+@pytest.mark.slow
+def test_unless_told_otherwise_the_grasp_is_proven(tmp_path: Path) -> None:
+    content = shipped()
+    del content["options"]["algorithm"]
+    stages = set()
+    plan = plan_pipe(load_pipe_problem(written(tmp_path, content)), lambda stage, _: stages.add(stage))
+    assert plan.outcome == mg.Outcome.solved and 0 < plan.gap <= 1e-3
+    assert "branch and bound" in stages
+    assert plan.optimum.evaluations > 300  # the middles of boxes count, too
+
+
+def test_arms_that_no_bounds_are_known_for_are_searched_by_bees() -> None:
+    arm = load_pipe_problem("pipe1").arm
+    assert _core.default_grasp_search(arm) == "branch_and_bound"
+    robot = mg.Robot.load(shipped_file("asset:robots/kr6like/kr6like.urdf"))
+    assert _core.default_grasp_search(robot.group(base_link="base_link", tip="link_5")) == "bees"
 
 
 def test_too_low_a_limit_is_said_with_the_pose(tmp_path: Path) -> None:
@@ -436,6 +467,11 @@ def test_a_grasp_whose_motion_cannot_be_timed_gives_way_to_the_next(
     assert not np.array_equal(second.grasp.T_object_hand, refused[0])
     assert second.path.cost >= plan.path.cost
     assert len(second.sags) == len(plan.sags)
+    page, path = pipe_report_html(second, None), second.path
+    assert f"{path.cost:.3f}" in page and f"{path.joint_motion:.2f} rad" in page
+    assert f"{plan.path.cost:.3f}" not in page and f"{plan.path.joint_motion:.3f}" not in page  # of the refused grasp
+    best = page[page.index("<b>the best</b>") :]
+    assert best.index(f"{path.cost:.3f}") < best.index("</tr>")
     refused += [f.grasp.T_object_hand for f in plan.optimum.feasible]
     with pytest.raises(planning.UntimedError, match="grasps tried"):
         planning.plan_pipe(plan.problem)

@@ -48,4 +48,4 @@ def test_premises_of_the_proof(small_plan: mg.part_supply.ScenarioPlan, small_pl
     plan = copy.deepcopy(small_plan_dict)
     plan["premises"]["headings"]["A"] = [0.0, 1.5]
     faults = mg.verify_plan(plan).faults
-    assert [(f.code, f.where) for f in faults] == [("bad-figures", "premises.headings")]
+    assert [(f.code, f.where) for f in faults] == [("wrong-values", "premises.headings")]

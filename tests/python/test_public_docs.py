@@ -1,12 +1,14 @@
-"""Everything public of the C++ library has a docstring."""
+"""Everything public of the C++ library has a docstring; comments in C++ have a subject."""
 
 from __future__ import annotations
 
 import enum
 import inspect
+import re
 from collections.abc import Iterator
 from types import ModuleType
 
+from conftest import REPOSITORY
 from mmgrasp import _core
 
 
@@ -53,3 +55,17 @@ def test_a_bare_signature_is_no_documentation() -> None:
     assert not described("size(self: mmgrasp._core.Box) -> float\n")
     assert not described(None)
     assert described("size(self: mmgrasp._core.Box) -> float\n\nFull lengths [m].")
+
+
+def test_comments_have_a_subject() -> None:
+    """One that begins with Of, By or In leaves it to the reader to find out what is spoken of."""
+    comment, fragment = re.compile(r"\s*//"), re.compile(r"//[/!]?<? *(Of|By|In) ")
+    lost: list[str] = []
+    for path in sorted((REPOSITORY / "cpp").rglob("*.[hci]*")):
+        before = ""
+        for line in path.read_text().splitlines():
+            continues = comment.match(line) and comment.match(before)
+            if fragment.search(line) and not continues:
+                lost.append(f"{path.relative_to(REPOSITORY)}: {line.strip()}")
+            before = line
+    assert lost == []

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
+from mmgrasp.reproduce import grasp_search, grasp_search_runs
 from mmgrasp.reproduce.entry import Result
 from mmgrasp.reproduce.pipe_runs import mean
 from mmgrasp.reproduce.statements import CONFIRMED, NO_DIFFERENCE, REVERSED, Pair, difference
@@ -52,3 +55,33 @@ def test_a_statement_has_three_answers() -> None:
     assert result.to_dict()["checks"][1]["answer"] == "reversed"
     assert mean([None, 1.0, 3.0]) == 2.0
     assert mean([None]) is None
+
+
+def run_of(pipe: str, method: str, setting: int, solved: list[bool], evaluations: list[int]) -> dict[str, Any]:
+    return {"pipe": pipe, "method": method, "setting": setting, "solved": solved, "evaluations": evaluations}
+
+
+def test_settings_of_a_pipe_are_one_cell() -> None:
+    """Nine settings that agree on each of three pipes are three draws, and the words name them."""
+    done = [
+        run_of(pipe, method, setting, [True], [100 * (1 + i) + (50 * (i + 1) if method == "Str1" else 0)])
+        for i, pipe in enumerate(("Pipe1", "Pipe2", "Pipe3"))
+        for method in ("Str1", "Str3")
+        for setting in range(1, 10)
+    ]
+    found = difference(grasp_search_runs.pairs(done, "evaluations", "Str1", "Str3"))
+    assert found is not None and found.cells == 3 and found.mean == pytest.approx(100)
+    assert found.half == pytest.approx(4.30265 * 50 / np.sqrt(3), rel=1e-5)  # t(2), deviation 50
+    assert found.answer == NO_DIFFERENCE  # 27 draws would have said otherwise
+    assert "Pipe1 +50, Pipe2 +100, Pipe3 +150" in str(found)
+    small = [d for d in done if d["method"] == "Str1"]
+    by_population = difference(grasp_search_runs.pairs_of_settings(small, "evaluations", "Str1", 102, 34, 4))
+    assert by_population is not None and by_population.cells == 3
+
+
+def test_the_runs_that_choose_a_setting_do_not_tell_of_it() -> None:
+    lucky = run_of("Pipe1", "GA", 1, [True, False] * 5, [1, 1000] * 5)  # good in every second run only
+    steady = run_of("Pipe1", "GA", 2, [True, True, False, True] * 2 + [True, True], [500] * 10)
+    best = grasp_search._best([lucky, steady])
+    assert best["setting"] == 1
+    assert best["solved"] == [False] * 5 and best["evaluations"] == [1000] * 5

@@ -10,8 +10,8 @@ import pytest
 
 import mmgrasp as mg
 from conftest import ASSETS
-from mmgrasp._records import MotionMessage
 from mmgrasp.planning import RobotMotion
+from mmgrasp.records import MotionMessage
 from mmgrasp.reproduce.drive_by import GOAL, START, whole_body
 
 

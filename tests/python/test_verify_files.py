@@ -23,7 +23,7 @@ import mmgrasp as mg
         ('{"format": "mmgrasp-plan", "version": NaN}', "no number in JSON"),
         ('{"format": ' + "[" * 900 + "]" * 900 + "}", "nested"),
         ("[" * 100000, "nested"),
-        ('{"format": "mmgrasp-plan", "version": 3', "is no valid JSON"),
+        ('{"format": "mmgrasp-plan", "version": 4', "is no valid JSON"),
         ("[]", "is no plan"),
         ('"\\ud800"', "is no plan"),
     ],
@@ -31,6 +31,28 @@ import mmgrasp as mg
 def test_texts_that_are_no_plan(tmp_path: Path, text: str, piece: str) -> None:
     (tmp_path / "plan.json").write_text(text)
     with pytest.raises(mg.InvalidInput, match=re.escape(piece)):
+        mg.verify_plan(tmp_path / "plan.json")
+
+
+def test_a_plan_of_an_older_version_brings_the_new_names(tmp_path: Path) -> None:
+    old = {
+        "format": "mmgrasp-plan",
+        "version": 3,
+        "lost_intersections": [],
+        "picks": [{"motions": [{"holding": True}]}],
+    }
+    (tmp_path / "plan.json").write_text(json.dumps(old))
+    names = "reads version 4: holding is attached, lost_intersections is too_small_intersections now"
+    with pytest.raises(mg.InvalidInput, match=names):
+        mg.verify_plan(tmp_path / "plan.json")
+
+
+def test_a_key_that_has_a_new_name_brings_it(tmp_path: Path, small_plan_dict: dict[str, Any]) -> None:
+    plan = copy.deepcopy(small_plan_dict)
+    motion = plan["picks"][0]["motions"][2]
+    motion["holding"] = motion["attached"]
+    (tmp_path / "plan.json").write_text(json.dumps(plan))
+    with pytest.raises(mg.InvalidInput, match="holding: unknown key; it is called attached now"):
         mg.verify_plan(tmp_path / "plan.json")
 
 
@@ -48,7 +70,7 @@ def test_texts_that_are_no_plan(tmp_path: Path, text: str, piece: str) -> None:
         ("scenario.extra", 1),
         ("stops.0.intersection", 1.5),
         ("robustness_rate", 1e400),
-        ("lost_intersections", {}),
+        ("too_small_intersections", {}),
     ],
 )
 def test_values_of_another_form_are_named(small_plan_dict: dict[str, Any], path: str, value: Any) -> None:

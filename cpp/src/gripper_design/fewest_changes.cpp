@@ -224,7 +224,7 @@ class Search {
   }
 
   const std::vector<GripperCandidate>& candidates_;
-  std::vector<Bits> takers_;  // Of each part: the candidates that take it.
+  std::vector<Bits> takers_;  // The candidates that take each part.
   double least_gripper_cost_;
   const MinimalGrippersOptions& options_;
   const Monitor& monitor_;

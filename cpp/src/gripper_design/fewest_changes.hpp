@@ -9,7 +9,7 @@ namespace mmgrasp::detail {
 /// Grippers that take every part, and which one takes which part.
 struct GripperChoice {
   std::vector<int> of_part;  ///< Candidate of each part, in the order of assembly.
-  double gripper_cost = 0;   ///< Of the grippers used.
+  double gripper_cost = 0;   ///< Cost of the grippers used.
   int changes = 0;           ///< From part to part.
 };
 

@@ -20,7 +20,7 @@ using detail::kPi;
 
 constexpr double kEqual = 1e-9;       // [m]
 constexpr double kLongestPad = 0.02;  // [m]
-constexpr double kDensity = 1240;     // Of a printed plastic (PLA) [kg/m3].
+constexpr double kDensity = 1240;     // Density of a printed plastic (PLA) [kg/m3].
 constexpr double kGap = 1e-4;         // Between the flanks of closed centric fingers [m].
 
 /// Half the finger's width at depth `x` behind the pad. Three fingers stay in sectors of 120 degrees, so that they do

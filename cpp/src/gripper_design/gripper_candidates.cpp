@@ -77,7 +77,7 @@ class Places {
     }
     std::sort(ranges.begin(), ranges.end());
     std::vector<double> lengths;
-    double first_end = kInfinity;  // Of what the current length takes.
+    double first_end = kInfinity;  // Least upper end of the ranges that the current length takes.
     for (std::size_t i = 0; i < ranges.size(); ++i) {
       if (i > 0 && ranges[i].first > first_end + kEqual) {
         lengths.push_back(ranges[i - 1].first);
@@ -151,7 +151,7 @@ std::vector<GripperCandidate> gripper_candidates(const std::vector<SegmentRequir
   std::vector<RequiredRange> ranges;
   for (const SegmentRequirement& r : requirements) ranges.push_back(required_range(r, options));
   std::vector<GripperCandidate> all;
-  std::map<std::pair<double, Bits>, int> seen;  // By cost and parts.
+  std::map<std::pair<double, Bits>, int> seen;  // Index by cost and parts.
   for (std::size_t a = 0; a < actuators.size(); ++a) {
     const Places places(requirements, actuators[a], options);
     if (places.empty()) continue;

@@ -224,7 +224,7 @@ class Problem {
   const std::vector<GripperActuator>& actuators_;
   const MinimalGrippersOptions& options_;
   std::vector<std::string> parts_;
-  std::vector<int> part_of_;  // Of each requirement.
+  std::vector<int> part_of_;  // Part of each requirement.
   std::vector<GripperCandidate> candidates_;
 };
 

@@ -2,38 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <string>
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "structure/node_pieces.hpp"
 #include "structure/section_axes.hpp"
 
 namespace mmgrasp {
-namespace {
-
+using detail::entry;
 using Eigen::Vector3d;
-
-std::string entry(const char* list, std::size_t index) {
-  return std::string(list) + "[" + std::to_string(index) + "]";
-}
-
-/// Number of the connected piece of each node, the smallest node of the piece.
-std::vector<int> pieces(const Pipe& pipe) {
-  std::vector<int> piece(pipe.nodes.size());
-  std::iota(piece.begin(), piece.end(), 0);
-  for (bool changed = true; changed;) {
-    changed = false;
-    for (const auto& [a, b] : pipe.sections) {
-      const int least = std::min(piece[a], piece[b]);
-      changed = changed || piece[a] != piece[b];
-      piece[a] = piece[b] = least;
-    }
-  }
-  return piece;
-}
-
-}  // namespace
 
 void Pipe::check() const {
   require(!sections.empty(), "sections", "[]", "a pipe has at least one section");
@@ -43,7 +21,6 @@ void Pipe::check() const {
     require(nodes[i].allFinite(), entry("nodes", i), "not finite", "must be three finite numbers [m]");
   }
   const int count = static_cast<int>(nodes.size());
-  std::vector<bool> used(nodes.size(), false);
   for (std::size_t i = 0; i < sections.size(); ++i) {
     const auto [a, b] = sections[i];
     const std::string value = "(" + std::to_string(a) + ", " + std::to_string(b) + ")";
@@ -56,17 +33,10 @@ void Pipe::check() const {
       require(!((a == c && b == d) || (a == d && b == c)), entry("sections", i), value,
               "joins the same nodes as " + entry("sections", j));
     }
-    used[a] = used[b] = true;
     require(std::isfinite(diameters[i]) && diameters[i] > 0, entry("diameters", i), diameters[i],
             "must be positive [m]");
   }
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    require(used[i], entry("nodes", i), "of no section", "every node must belong to a section");
-  }
-  const std::vector<int> piece = pieces(*this);
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    require(piece[i] == 0, entry("nodes", i), "not connected to nodes[0]", "a pipe is one connected piece");
-  }
+  detail::check_one_piece(nodes.size(), sections, "section", "pipe");
 }
 
 double Pipe::length(int section) const {

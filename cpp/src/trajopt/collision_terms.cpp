@@ -137,8 +137,11 @@ void CollisionTerm::hessian(const double* x, const double* multipliers, double* 
 }
 
 CollisionRows::CollisionRows(std::vector<CollisionChecker*> checkers, std::vector<int> pinned, double margin,
-                             double look_out)
-    : checkers_(std::move(checkers)), pinned_(std::move(pinned)), margin_(margin), look_out_(look_out) {
+                             double constraint_distance)
+    : checkers_(std::move(checkers)),
+      pinned_(std::move(pinned)),
+      margin_(margin),
+      constraint_distance_(constraint_distance) {
   for (CollisionChecker* checker : checkers_) {
     if (!checker || bodies_.count(checker) > 0) continue;
     padding_ = std::max(padding_, 2 * checker->world().padding().most() + checker->options().padding);
@@ -169,17 +172,17 @@ bool CollisionRows::look_along(const WholeBodyTrajectory& trajectory) {
   return collides;
 }
 
-void CollisionRows::keep_clear(const std::vector<VectorXd>& positions, bool parts_bodies) {
+void CollisionRows::keep_clear(const std::vector<VectorXd>& positions, bool keeps_sides) {
   reference_ = positions;
   for (int i = 0; i < static_cast<int>(checkers_.size()); ++i) {
     CollisionChecker* checker = checkers_[i];
     if (!checker) continue;
-    for (const DistanceResult& d : checker->distances(positions[i], look_out_ + kCorners * padding_))
+    for (const DistanceResult& d : checker->distances(positions[i], constraint_distance_ + kCorners * padding_))
       if (d.with_scene && d.gradient.cwiseAbs().maxCoeff() > 0) watch(*checker, d);
   }
   const std::map<Pair, double> rooms = rooms_along(positions);
   for (const Sample& sample : regular_samples()) take_planes_at(sample, reference(sample), rooms);
-  if (!parts_bodies) reference_.clear();
+  if (!keeps_sides) reference_.clear();
 }
 
 std::map<CollisionRows::Pair, double> CollisionRows::rooms_along(const std::vector<VectorXd>& positions) {
@@ -249,7 +252,7 @@ void CollisionRows::take_planes_at(const Sample& sample, const VectorXd& q, cons
   PlaneMaker here(*checker, q);
   std::optional<PlaneMaker> apart;  // where they are known to be
   std::map<Pair, DistanceResult> known;
-  for (const DistanceResult& d : here.distances(look_out_ + kCorners * padding_)) {
+  for (const DistanceResult& d : here.distances(constraint_distance_ + kCorners * padding_)) {
     const Pair pair{d.with_scene, d.a, d.b};
     if (watched_.count(pair) == 0 || std::abs(d.value) < 1e-9) continue;
     if (d.gradient.cwiseAbs().maxCoeff() < 1e-12) continue;  // no joint can separate them

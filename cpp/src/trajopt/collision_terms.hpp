@@ -45,15 +45,16 @@ class MMGRASP_EXPORT CollisionRows {
  public:
   /// `pinned`: waypoints whose configuration or tool pose is prescribed; bodies that are closer than the margin there
   /// are given what room they have. The paddings of the checkers' worlds are kept beside the margin.
-  CollisionRows(std::vector<CollisionChecker*> checkers, std::vector<int> pinned, double margin, double look_out);
+  CollisionRows(std::vector<CollisionChecker*> checkers, std::vector<int> pinned, double margin,
+                double constraint_distance);
 
   /// Looks along a trajectory; false when nothing collides. Pairs that collide anywhere are constrained from then on
-  /// wherever they are within look_out.
+  /// wherever they are within constraint_distance.
   bool look_along(const WholeBodyTrajectory& trajectory);
-  /// `positions`, one per waypoint, are known to be free, also straight between them: what is within look_out of the
-  /// scene there is constrained. With `parts_bodies`, those that collide later are parted as they are parted there, so
-  /// that this way stays within all constraints.
-  void keep_clear(const std::vector<Eigen::VectorXd>& positions, bool parts_bodies);
+  /// `positions`, one per waypoint, are known to be free, also straight between them: what is within
+  /// constraint_distance of the scene there is constrained. With `keeps_sides`, bodies that collide later are pushed
+  /// apart to the sides on which they lie there, so that this motion stays within all constraints.
+  void keep_clear(const std::vector<Eigen::VectorXd>& positions, bool keeps_sides);
   void add_to(WholeBodyNlp& nlp, bool diff_drive) const;
 
  private:
@@ -72,12 +73,12 @@ class MMGRASP_EXPORT CollisionRows {
 
   std::vector<CollisionChecker*> checkers_;
   std::vector<int> pinned_;
-  double margin_, look_out_;
+  double margin_, constraint_distance_;
   std::map<const CollisionChecker*, BodyPadding> bodies_;
   double padding_ = 0;  ///< No pair's is larger [m].
   std::set<Pair> watched_;
   std::set<Pair> corners_;           ///< Pairs whose padding met though they were that far apart.
-  std::map<Pair, double> paddings_;  ///< Of watched pairs, where there is any [m].
+  std::map<Pair, double> paddings_;  ///< Padding of those watched pairs that have any [m].
   std::set<Sample> samples_;         // samples beside the regular ones
   std::vector<Eigen::VectorXd> reference_;
   std::map<Sample, std::map<Pair, std::vector<SeparatingPlane>>> planes_;

@@ -32,7 +32,8 @@ void WholeBodyOptions::check() const {
   require(smoothing >= 0 && std::isfinite(smoothing), "smoothing", smoothing, "must be at least 0");
   require(warm_start >= 0 && std::isfinite(warm_start), "warm_start", warm_start, "must be at least 0");
   require(margin >= 0 && std::isfinite(margin), "margin", margin, "must be at least 0");
-  require(look_out > margin && std::isfinite(look_out), "look_out", look_out, "must exceed margin");
+  require(constraint_distance > margin && std::isfinite(constraint_distance), "constraint_distance",
+          constraint_distance, "must exceed margin");
   require(refinements >= 0, "refinements", refinements, "must be at least 0");
 }
 
@@ -56,12 +57,12 @@ WholeBodyResult optimize_whole_body(const WholeBodyProblem& problem, const Whole
   WholeBodyResult result;
   std::vector<int> pinned{0, problem.intervals()};
   for (const ToolConstraint& tool : problem.tool) pinned.push_back(tool.waypoint);
-  detail::CollisionRows rows(checkers, pinned, options.margin, options.look_out);
+  detail::CollisionRows rows(checkers, pinned, options.margin, options.constraint_distance);
   Eigen::VectorXd x;
   {
     const detail::WholeBodyNlp nlp(problem, options.smoothing);
     x = nlp.pack(guess);
-    if (!checkers.empty() && guess.free) rows.keep_clear(guess.positions, guess.parts_bodies);
+    if (!checkers.empty() && guess.collision_free) rows.keep_clear(guess.positions, guess.keeps_sides);
   }
   for (int round = 0;; ++round) {
     detail::WholeBodyNlp nlp(problem, options.smoothing);

@@ -4,13 +4,13 @@ The C++ library behind mmgrasp. Import names from mmgrasp itself.
 from __future__ import annotations
 import collections.abc
 import enum
-import mmgrasp._records
+import mmgrasp.records
 import numpy
 import numpy.typing
 import os
 import typing
 from . import verify
-__all__: list[str] = ['AssemblyGrasp', 'AssemblyOperation', 'BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'BeamExtreme', 'BeamFrame', 'BeamMaterial', 'BeamMember', 'BeamSection', 'BeamState', 'BeamSupport', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactPairProvenance', 'ContactPatch', 'CuboidFit', 'Cylinder', 'DepthCamera', 'DepthImage', 'DepthNoise', 'DerivativeFreeResult', 'DistanceField', 'DistanceResult', 'DrawnSuccess', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'Facet', 'FeasibleGrasp', 'FingerLengthRange', 'FittedCuboid', 'FittedPrimitive', 'Grasp', 'GraspOptimum', 'GraspRating', 'GraspReport', 'GraspSuccess', 'GraspSynthesis', 'GraspWidth', 'Graspability', 'GridDistanceField', 'Gripper', 'GripperActuator', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'IntegrationReport', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LineGrasp', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'Mesh', 'MeshDistanceField', 'MeshSegment', 'MeshSegmentation', 'MinimalGrippersResult', 'MotionResult', 'MotionStats', 'NodeLoad', 'ObjectPathEvaluator', 'ObjectPathProblem', 'ObjectPathResult', 'ObjectRegions', 'ObjectSegmentation', 'Obstruction', 'OccupancyMap', 'OccupancyReport', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'PairwiseWeights', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedMesh', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'ProbabilisticSdf', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotMotion', 'RobotSource', 'ScrewThread', 'SdfHits', 'SearchTree', 'SegmentRequirement', 'SegmentedObject', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'SupportedFrame', 'SupportingPlane', 'ToolRegion', 'TourResult', 'Tray', 'Voxels', 'WholeBodyTrajectory', 'World', 'beam_frame', 'cache_folder', 'camera_view_objective', 'centric_grasps', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'copper', 'cover_from_intersections', 'derivative_free_solver_names', 'drive_arc', 'eigengrasp_hand', 'evaluate_graspability', 'find_package', 'finger_length_range', 'fit_cuboids', 'fit_primitives', 'follow_object_path', 'grasp_search_names', 'graspability_map', 'hand_masks', 'inscribed_circle', 'jaw_grasps', 'joint_limit_objective', 'joint_velocity', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimal_grippers', 'minimize_derivative_free', 'nlp_solver_names', 'optimised_order', 'optimize_grasp', 'paired_order', 'pairwise_weights', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stop_picks', 'plan_stops_exact', 'plan_straight_line', 'planar_facets', 'planner_names', 'platform_velocity', 'population_search_names', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'rectangular_section', 'render_depth', 'resting_poses', 'robust_intersections', 'round_section', 'route_lengths', 'run_policy', 'sample_grasps', 'segment_depth_image', 'segment_mesh', 'segment_objects', 'self_distance_objective', 'shape_diameters', 'share_headings', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_set_cover', 'synthesize_grasps', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
+__all__: list[str] = ['AssemblyGrasp', 'AssemblyOperation', 'BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'BeamExtreme', 'BeamFrame', 'BeamMaterial', 'BeamMember', 'BeamSection', 'BeamState', 'BeamSupport', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactPairProvenance', 'ContactPatch', 'CuboidFit', 'Cylinder', 'DepthCamera', 'DepthImage', 'DepthNoise', 'DerivativeFreeResult', 'DistanceField', 'DistanceResult', 'DrawnSuccess', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'Facet', 'FeasibleGrasp', 'FingerLengthRange', 'FittedCuboid', 'FittedPrimitive', 'Grasp', 'GraspOptimum', 'GraspRating', 'GraspReport', 'GraspSuccess', 'GraspSynthesis', 'GraspWidth', 'Graspability', 'GridDistanceField', 'Gripper', 'GripperActuator', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'IntegrationReport', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LineGrasp', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'ManipulationStats', 'Mesh', 'MeshDistanceField', 'MeshSegment', 'MeshSegmentation', 'MinimalGrippersResult', 'MotionResult', 'MotionStats', 'NodeLoad', 'ObjectPathEvaluator', 'ObjectPathProblem', 'ObjectPathResult', 'ObjectRegions', 'ObjectSegmentation', 'Obstruction', 'OccupancyMap', 'OccupancyReport', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'PairwiseWeights', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedMesh', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'ProbabilisticSdf', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotMotion', 'RobotSource', 'ScrewThread', 'SdfHits', 'SearchTree', 'SegmentRequirement', 'SegmentedObject', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'SupportedFrame', 'SupportingPlane', 'ToolRegion', 'TourResult', 'Tray', 'Voxels', 'WholeBodyTrajectory', 'World', 'beam_frame', 'cache_folder', 'camera_view_objective', 'centric_grasps', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'copper', 'cover_from_intersections', 'default_grasp_search', 'derivative_free_solver_names', 'drive_arc', 'eigengrasp_hand', 'evaluate_graspability', 'find_package', 'finger_length_range', 'fit_cuboids', 'fit_primitives', 'follow_object_path', 'grasp_search_names', 'graspability_map', 'hand_masks', 'inscribed_circle', 'jaw_grasps', 'joint_limit_objective', 'joint_velocity', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimal_grippers', 'minimize_derivative_free', 'nlp_solver_names', 'optimised_order', 'optimize_grasp', 'paired_order', 'pairwise_weights', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stop_picks', 'plan_stops_exact', 'plan_straight_line', 'planar_facets', 'planner_names', 'platform_velocity', 'population_search_names', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'rectangular_section', 'render_depth', 'resting_poses', 'robust_intersections', 'round_section', 'route_lengths', 'run_policy', 'sample_grasps', 'segment_depth_image', 'segment_mesh', 'segment_objects', 'self_distance_objective', 'shape_diameters', 'share_headings', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_set_cover', 'synthesize_grasps', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
 class Error(Exception):
     """
     Base of all errors of mmgrasp.
@@ -108,7 +108,7 @@ class Robot:
         Link pairs that need no collision check: (a, b, reason).
         """
     @property
-    def end_effectors(self) -> list[mmgrasp._records.EndEffectorRow]:
+    def end_effectors(self) -> list[mmgrasp.records.EndEffectorRow]:
         """
         SRDF end effectors: name, group and parent_link.
         """
@@ -123,7 +123,7 @@ class Robot:
         SRDF states: group, state, joint to value. Joints with several values appear as joint/x, joint/y, ...
         """
     @property
-    def groups(self) -> dict[str, mmgrasp._records.GroupRow]:
+    def groups(self) -> dict[str, mmgrasp.records.GroupRow]:
         """
         SRDF groups: name to joints, base_link, tip_link.
         """
@@ -138,7 +138,7 @@ class Robot:
         Content hash: kinematics, shapes, limits, disabled pairs.
         """
     @property
-    def joint_table(self) -> list[mmgrasp._records.JointRow]:
+    def joint_table(self) -> list[mmgrasp.records.JointRow]:
         """
         Every joint as a dict.
         """
@@ -163,7 +163,7 @@ class Robot:
         Joints that nothing drives (SRDF passive_joint): in no group.
         """
     @property
-    def report(self) -> mmgrasp._records.RobotReport:
+    def report(self) -> mmgrasp.records.RobotReport:
         """
         What loading found.
         """
@@ -405,8 +405,9 @@ class World:
         """
     def add_field(self, name: str, field: DistanceField, pose: numpy.typing.ArrayLike | None = None, *, resolution: float = 0.001, unknown_is_free: bool = False) -> None:
         """
-        What a distance field holds, at T_world_field (4, 4). A body is free only where the field proves it, and is called
-        so when it is farther away than twice the field's error and `resolution` [m].
+        What a distance field holds, at T_world_field (4, 4): a mesh's or a grid's; maps of cameras by add_sdf. A body is
+        free only where the field proves it, and is called so when it is farther away than twice the field's error and
+        `resolution` [m].
         """
     def add_floor(self, group: JointGroup, height: float = 0.0) -> None:
         """
@@ -508,14 +509,14 @@ class World:
         Names of the scene's objects.
         """
     @property
-    def padding(self) -> mmgrasp._records.WorldPadding:
+    def padding(self) -> mmgrasp.records.WorldPadding:
         """
         How far bodies are grown where the robot (with what it holds) meets the scene [m]; never within the robot. A
         number is for all links; a dict has the keys `links`, `attached`, `objects` and `by_name` (link, object or
         SRDF group to its own padding, in place of the others).
         """
     @padding.setter
-    def padding(self, arg1: float | mmgrasp._records.WorldPadding | collections.abc.Mapping[str, float | collections.abc.Mapping[str, float]]) -> None:
+    def padding(self, arg1: float | mmgrasp.records.WorldPadding | collections.abc.Mapping[str, float | collections.abc.Mapping[str, float]]) -> None:
         ...
 class Outcome(enum.Enum):
     """
@@ -562,7 +563,7 @@ class Rejections:
     @property
     def scene(self) -> int:
         """
-        Reached, but robot (or what it holds) hits the scene.
+        Reached, but the robot, or what is attached to it, hits the scene.
         """
     @property
     def self_collision(self) -> int:
@@ -1035,12 +1036,12 @@ class RobotSource:
         robot's root). `mesh_files` maps the URDF's mesh filenames to files; an empty one leaves the mesh out.
         """
     @property
-    def added_links(self) -> list[mmgrasp._records.AddedLinkRow]:
+    def added_links(self) -> list[mmgrasp.records.AddedLinkRow]:
         """
         As dicts with the arguments of add_link.
         """
     @property
-    def urdfs(self) -> list[mmgrasp._records.UrdfRow]:
+    def urdfs(self) -> list[mmgrasp.records.UrdfRow]:
         """
         As dicts with the arguments of add_urdf.
         """
@@ -1151,7 +1152,7 @@ class JointTrajectory:
         """
         As a dict of plain numbers, strings and lists, e.g. for JSON.
         """
-    def to_joint_trajectory(self, base_pose: numpy.typing.ArrayLike | None = None) -> mmgrasp._records.MotionMessage:
+    def to_joint_trajectory(self, base_pose: numpy.typing.ArrayLike | None = None) -> mmgrasp.records.MotionMessage:
         """
         RobotMotion's message: columns x, y, theta in front are the base's; without them it stands at base_pose.
         """
@@ -1836,7 +1837,7 @@ class Grasp:
         ...
     def to_dict(self) -> dict[str, typing.Any]:
         """
-        All of it as numbers, strings, lists and dicts; parts by their values.
+        All of it as numbers, strings, lists and dicts; factors of the quality by their values.
         """
     @property
     def T_object_hand(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -1854,11 +1855,6 @@ class Grasp:
         Distance between the fingers while holding [m].
         """
     @property
-    def parts(self) -> dict[str, tuple[float, float]]:
-        """
-        Parts of the quality by name: (value, weight); each is a factor 1 - weight + weight * value.
-        """
-    @property
     def posture(self) -> list[float]:
         """
         How far each joint group of the hand is open; []: as `opening` says.
@@ -1872,6 +1868,11 @@ class Grasp:
     def quality(self) -> float:
         """
         Larger is better, in [0, 1].
+        """
+    @property
+    def quality_factors(self) -> dict[str, tuple[float, float]]:
+        """
+        What the quality is the product of, by name: (value, weight) of the factor 1 - weight + weight * value.
         """
 class HandJoint:
     """
@@ -2303,7 +2304,7 @@ class Roadmap:
         Pairs of vertices (m, 2), the smaller number first.
         """
     @property
-    def statistics(self) -> mmgrasp._records.RoadmapStatistics:
+    def statistics(self) -> mmgrasp.records.RoadmapStatistics:
         """
         Mean degree, connected parts, the largest one's vertices, nearest ones joined, connection radius, the volume of the joint limits, and the gamma that PRM* asks for.
         """
@@ -2472,6 +2473,86 @@ class GraspReport:
         """
         Arm configurations left at the start.
         """
+class ManipulationStats:
+    """
+    What a search of plan_manipulation took.
+    """
+    def __repr__(self) -> str:
+        ...
+    def to_dict(self) -> dict[str, typing.Any]:
+        """
+        As a dict of plain numbers, strings and lists, e.g. for JSON.
+        """
+    @property
+    def edges_checked_attached(self) -> int:
+        """
+        Edges checked for the attached object.
+        """
+    @property
+    def edges_checked_robot(self) -> int:
+        """
+        Edges checked for the robot alone, shared by all grasps of an opening.
+        """
+    @property
+    def graph_searches(self) -> int:
+        """
+        Searches of prm_star_mg's per-grasp graphs.
+        """
+    @property
+    def grasps_searched(self) -> int:
+        """
+        Grasps for which prm_star_mg searched a roadmap; each counts once.
+        """
+    @property
+    def ik_seconds(self) -> float:
+        """
+        Time for the arm configurations at start and goal [s].
+        """
+    @property
+    def nodes_opened(self) -> int:
+        """
+        Nodes pushed to the open lists of graph searches (prm_star_mg without lazy_grasps).
+        """
+    @property
+    def postures_bound(self) -> float:
+        """
+        No path between the arm postures that were found costs less.
+        """
+    @property
+    def roadmap_bound(self) -> float:
+        """
+        No path over prm_star_mg's roadmap, or straight, costs less; infinite: there is none.
+        """
+    @property
+    def roadmap_cost(self) -> float:
+        """
+        Cost of prm_star_mg's best path over the roadmap before shortening; 0: none is cheaper than the first path.
+        """
+    @property
+    def roadmap_seconds(self) -> float:
+        """
+        Time for building a roadmap [s]; 0: it was given or not used.
+        """
+    @property
+    def samples(self) -> int:
+        """
+        Samples that rrt_star_mg drew or reassigned.
+        """
+    @property
+    def search_seconds(self) -> float:
+        """
+        Time for all the rest [s].
+        """
+    @property
+    def stages(self) -> dict[str, mmgrasp.records.StageRow]:
+        """
+        What each stage contributed, by its name, in the order of their first improvement.
+        """
+    @property
+    def vertices(self) -> int:
+        """
+        Vertices of rrt_star_mg's trees, removed ones included.
+        """
 class ManipulationResult:
     """
     What plan_manipulation found.
@@ -2528,7 +2609,7 @@ class ManipulationResult:
         Sum over all grasps and both ends.
         """
     @property
-    def stats(self) -> mmgrasp._records.ManipulationStats:
+    def stats(self) -> ManipulationStats:
         """
         What the search took: seconds, searches, edges checked; what each stage found and when.
         """
@@ -2856,9 +2937,9 @@ class PartSupplyProblem:
         database = mg.ReachDatabase.build(problem.arm)
         plan = mg.base.plan_part_supply(problem, database)
     """
-    def __init__(self, robot: Robot, arm: JointGroup, gripper: Hand, scene: World, trays: collections.abc.Sequence[Tray], home: numpy.typing.ArrayLike, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike, place_region: PlaceRegion, *, arrival_covariance: numpy.typing.ArrayLike | None = None, grid_resolution: float = 0.05, grid_max_distance: float = 0.0, ik_seeds: int = 8, positioning_uncertainty: float = 0.1, approach_distance: float = 0.08, lift_height: float = 0.12, motion_time_limit: float = 5.0, route_resolution: float = 0.1, robustness_samples: int = 2000, seed: int = 1, threads: int = 0) -> None:
+    def __init__(self, robot: Robot, arm: JointGroup, gripper: Hand, world: World, trays: collections.abc.Sequence[Tray], home: numpy.typing.ArrayLike, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike, place_region: PlaceRegion, *, arrival_covariance: numpy.typing.ArrayLike | None = None, grid_resolution: float = 0.05, grid_max_distance: float = 0.0, ik_seeds: int = 8, positioning_uncertainty: float = 0.1, approach_distance: float = 0.08, lift_height: float = 0.12, motion_time_limit: float = 5.0, route_resolution: float = 0.1, robustness_samples: int = 2000, seed: int = 1, threads: int = 0) -> None:
         """
-        `scene` is without the parts; `home` (n,) is the arm's configuration while driving; `start` and `goal` (3,) are base
+        `world` is without the parts; `home` (n,) is the arm's configuration while driving; `start` and `goal` (3,) are base
         poses x, y, theta [m, m, rad]. `arrival_covariance` (3, 3) of x, y [m^2] and theta [rad^2] in the world's axes says how far
         from a stop the base comes to stand; stops then are where most arrivals serve all their parts. Raises InvalidInput naming
         the field that breaks its rule.
@@ -2917,11 +2998,6 @@ class PartSupplyProblem:
         The robot.
         """
     @property
-    def scene(self) -> World:
-        """
-        Obstacles, tables and trays, without the parts.
-        """
-    @property
     def start(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         Base pose at the beginning (3,): x, y, theta [m, m, rad].
@@ -2930,6 +3006,11 @@ class PartSupplyProblem:
     def trays(self) -> list[Tray]:
         """
         The trays with their parts.
+        """
+    @property
+    def world(self) -> World:
+        """
+        Obstacles, tables and trays, without the parts.
         """
 class BaseGrid:
     """
@@ -3148,11 +3229,6 @@ class Intersections:
         False when the search ended early.
         """
     @property
-    def lost(self) -> list[Intersection]:
-        """
-        Shared cells whose disc is too small, largest first.
-        """
-    @property
     def robust(self) -> list[Intersection]:
         """
         The sets whose disc is large enough.
@@ -3166,6 +3242,11 @@ class Intersections:
     def sets_tried(self) -> int:
         """
         Sets checked.
+        """
+    @property
+    def too_small(self) -> list[Intersection]:
+        """
+        Shared cells whose disc is too small, largest first.
         """
 class Stop:
     """
@@ -3378,7 +3459,7 @@ class PickMotion:
     def __repr__(self) -> str:
         ...
     @property
-    def holding(self) -> bool:
+    def attached(self) -> bool:
         """
         The part is attached during the motion.
         """
@@ -3583,19 +3664,19 @@ class DriveByTask:
     """
     Something the tool does on the way: T_world_tip, (4, 4), or candidates (m, 4, 4) of which any will do.
     
-        task = mg.DriveByTask(mg.pose([2.0, -0.8, 0.75]), dwell=0.5, free=["yaw"])
+        task = mg.DriveByTask(mg.pose([2.0, -0.8, 0.75]), dwell=0.5, free_axes=["yaw"])
     
-    tolerance: (6,) along x, y, z [m] and about them [rad] of the pose's own frame; free: names of axes that do not
-    matter, of x, y, z, roll, pitch, yaw; max_tool_speed [m/s] at the task; dwell [s] for which the tool's pose is
-    kept, e.g. while a gripper closes; object: name of the world's object that is held afterwards: an obstacle for the
-    whole robot, the open hand included, until then; the fingers alone may touch it during the dwell. What rests on something
-    counts as 1 mm higher once it is held.
+    tolerance: (6,) along x, y, z [m] and about them [rad] of the pose's own frame; free_axes: names of axes along or
+    about which any error is allowed, of x, y, z, roll, pitch, yaw; max_tool_speed [m/s] at the task; dwell [s] for which
+    the tool's pose is kept, e.g. while a gripper closes; object: name of the world's object that is attached afterwards:
+    an obstacle for the whole robot, the open hand included, until then; the fingers alone may touch it during the dwell.
+    What rests on something counts as 1 mm higher once it is attached.
     
     push: a gripper that closes while the hand moves on (P1 4.3): dict of push_grasp's keywords, approach (3,), an axis of
     the tip's frame, and free_length [m], the straight way before the finger tips reach the object. T_world_tip is then
-    the planned grasp; tolerance, free, max_tool_speed and dwell are left out.
+    the planned grasp; tolerance, free_axes, max_tool_speed and dwell are left out.
     """
-    def __init__(self, T_world_tip: numpy.typing.ArrayLike, *, tolerance: numpy.typing.ArrayLike | None = None, free: collections.abc.Sequence[str] = [], max_tool_speed: float | None = None, dwell: float = 0.0, object: str = '', push: dict[str, typing.Any] | None = None) -> None:
+    def __init__(self, T_world_tip: numpy.typing.ArrayLike, *, tolerance: numpy.typing.ArrayLike | None = None, free_axes: collections.abc.Sequence[str] = [], max_tool_speed: float | None = None, dwell: float = 0.0, object: str = '', push: dict[str, typing.Any] | None = None) -> None:
         """
         The class says what the arguments mean; raises InvalidInput naming one that breaks its rule.
         """
@@ -3619,7 +3700,7 @@ class DriveByTask:
     @property
     def object(self) -> str:
         """
-        Name of the world's object that is held afterwards; empty: none.
+        Name of the world's object that is attached afterwards; empty: none.
         """
     @property
     def push(self) -> PushGrasp | typing.Any:
@@ -3705,7 +3786,7 @@ class DriveByResult:
         [s]
         """
     @property
-    def events(self) -> list[mmgrasp._records.DriveByEventRow]:
+    def events(self) -> list[mmgrasp.records.DriveByEventRow]:
         """
         One dict per task: waypoint, time and close_time [s], object (what is held then), attach_time [s] and T_tip_object, candidate, base_speed and
         tool_speed [m/s].
@@ -3746,7 +3827,7 @@ class DriveByResult:
         The answer or, when not solved, the best iterate; None when there was not even a guess.
         """
     @property
-    def violations(self) -> dict[str, mmgrasp._records.ViolationRow]:
+    def violations(self) -> dict[str, mmgrasp.records.ViolationRow]:
         """
         By kind of constraint: value (0 when kept), tolerance, unit, time [s], waypoint, what, kept; measured on a roll-out ten times
         finer than the waypoints.
@@ -3791,7 +3872,7 @@ class RobotMotion:
         Header time, base.x, base.y, base.theta, base.v, base.vy, base.omega, joints, name.velocity, name.acceleration, and
         gripper, where it does anything (what it begins to do up to the row's time).
         """
-    def to_joint_trajectory(self) -> mmgrasp._records.MotionMessage:
+    def to_joint_trajectory(self) -> mmgrasp.records.MotionMessage:
         """
         A dict shaped like a ROS trajectory_msgs/JointTrajectory, with base_pose and base_twist at every point, and `gripper`
         on the same clock.
@@ -3821,7 +3902,7 @@ class RobotMotion:
         [s]
         """
     @property
-    def gripper(self) -> list[mmgrasp._records.GripperEventRow]:
+    def gripper(self) -> list[mmgrasp.records.GripperEventRow]:
         """
         What the gripper does, in order: time and duration [s], command (open or close), opening [m] or None, object.
         """
@@ -3920,12 +4001,12 @@ class PlatformLocations:
         How it ended; `solved` alone comes with an answer.
         """
     @property
-    def pick(self) -> mmgrasp._records.SearchCounts:
+    def pick(self) -> mmgrasp.records.SearchCounts:
         """
         Draws, what they fell at, and iterations of the first pose.
         """
     @property
-    def place(self) -> mmgrasp._records.SearchCounts:
+    def place(self) -> mmgrasp.records.SearchCounts:
         """
         The same of the second pose.
         """
@@ -4754,7 +4835,7 @@ class Graspability:
     def __repr__(self) -> str:
         ...
     @property
-    def counts(self) -> mmgrasp._records.GraspabilityCounts:
+    def counts(self) -> mmgrasp.records.GraspabilityCounts:
         """
         Places checked (tried) and rejected: too_wide, poor, collision, near_better.
         """
@@ -5008,7 +5089,7 @@ class GraspSynthesis:
         Why the arm did not reach grasps.
         """
     @property
-    def counts(self) -> mmgrasp._records.SynthesisCounts:
+    def counts(self) -> mmgrasp.records.SynthesisCounts:
         """
         Surface points drawn and grasps evaluated, by what became of them.
         """
@@ -6022,7 +6103,7 @@ def _edge_option_table() -> dict[str, typing.Any]:
     ...
 def _first_drive_by_guess(group: JointGroup, *, start: numpy.typing.ArrayLike, tasks: collections.abc.Sequence[DriveByTask], goal: numpy.typing.ArrayLike, waypoints: int = 35) -> typing.Any:
     """
-    Where the first attempt begins, for benchmarks against other optimisers; None when a task is out of reach. solve() takes it from there, judging included: whether it is solved, the duration, processor seconds that judging once more took, and iterations.
+    The guess of the first seed, for benchmarks against other optimisers; None when a task is out of reach. solve() takes it from there, judging included: whether it is solved, the duration, processor seconds that judging once more took, and iterations.
     """
 def _grasp_option_table() -> dict[str, typing.Any]:
     ...
@@ -6154,6 +6235,10 @@ def copper() -> BeamMaterial:
 def cover_from_intersections(grid: BaseGrid, intersections: collections.abc.Sequence[Intersection], trays: int) -> StopSet:
     """
     The least number of intersections that cover all trays (P1 equation 3.1), with proof.
+    """
+def default_grasp_search(group: JointGroup) -> str:
+    """
+    branch_and_bound for arms that it takes, else bees.
     """
 def derivative_free_solver_names() -> list[str]:
     """
@@ -6369,7 +6454,7 @@ def optimised_order(grid: BaseGrid, cells: collections.abc.Sequence[collections.
     """
     The order in which parts are best picked when the trays of each group share a stop, never worse than `order`. `cells` is [tray][part], bitmaps (headings, ny, nx).
     """
-def optimize_grasp(problem: ObjectPathProblem, pipe: Pipe, *, gripper: Hand | None = None, algorithm: str = 'bees', neighbourhood_kind: str = 'connected_sections', progress: collections.abc.Callable[[str, float], typing.Any] | None = None, motion_weight: float = 0.587, deflection_weight: float = 0.089, manipulability_weight: float = 0.324, motion_scale: float = 1.0, deflection_scale: float = 0.001, manipulability_scale: float = 1.0, max_joint_step: float = 0.5, position_tolerance: float = 0.01, rotation_tolerance: float = 0.05, edge_step: float = 0.02, check_edges: bool = True, single_configuration: bool = False, all_turns: bool = True, redundant_values: int = 0, base_spacing: float = 0.2, base_headings: int = 4, gravity: float = 9.81, max_sag: float = 0.0, population: int = 34, max_evaluations: int = 1530, target: float = ..., seed: int = 1, elite_sites: int = 1, best_sites: int = 4, elite_recruits: int = 10, recruits: int = 3, stagnation_limit: int = 10, neighbourhood: float = 0.2, shrinking: float = 0.8, mutation_rate: float = 0.3, mutation_size: float = 0.25, connectivity: float = 0.5, inertia: float = 0.7, acceleration: float = 2.0, max_gap: float = 0.001, max_boxes: int = 1000000, time_limit: float = 600.0, threads: int = 0) -> GraspOptimum:
+def optimize_grasp(problem: ObjectPathProblem, pipe: Pipe, *, gripper: Hand | None = None, algorithm: str = 'bees', neighbourhood_kind: str = 'connected_sections', progress: collections.abc.Callable[[str, float], typing.Any] | None = None, motion_weight: float = 0.587, deflection_weight: float = 0.089, manipulability_weight: float = 0.324, motion_scale: float = 1.0, deflection_scale: float = 0.001, manipulability_scale: float = 1.0, max_joint_step: float = 0.5, position_tolerance: float = 0.01, rotation_tolerance: float = 0.05, edge_step: float = 0.02, check_edges: bool = True, single_configuration: bool = False, all_turns: bool = True, redundant_values: int = 0, base_spacing: float = 0.2, base_headings: int = 4, gravity: float = 9.81, max_sag: float = 0.0, population: int = 34, max_evaluations: int = 1530, target: float = ..., seed: int = 1, elite_sites: int = 1, best_sites: int = 4, elite_recruits: int = 10, recruits: int = 3, stagnation_limit: int = 10, neighbourhood: float = 0.2, shrinking: float = 0.8, mutation_rate: float = 0.3, mutation_size: float = 0.25, connectivity: float = 0.5, inertia: float = 0.7, acceleration: float = 2.0, front_searches: int = 0, max_gap: float = 0.001, max_boxes: int = 1000000, time_limit: float = 600.0, threads: int = 0) -> GraspOptimum:
     """
     The grasp of a pipe with the least cost along the path, by a population search: bees, ga or pso (P2 3.4),
     or with its optimum proven: branch_and_bound.
@@ -6411,6 +6496,7 @@ def optimize_grasp(problem: ObjectPathProblem, pipe: Pipe, *, gripper: Hand | No
         connectivity: float = 0.5  # pso: share of the others each particle hears of
         inertia: float = 0.7  # pso: of velocity
         acceleration: float = 2.0  # pso: P2's c1 and c2
+        front_searches: int = 0  # further searches, each for another mix of the objectives: the Pareto front is searched
         max_gap: float = 0.001  # branch_and_bound: ends once no grasp can be cheaper by this share
         max_boxes: int = 1000000  # branch_and_bound: budget in boxes of grasps
         time_limit: float = 600.0  # branch_and_bound: wall-clock cap [s]
@@ -6442,7 +6528,7 @@ def plan_cartesian(checker: CollisionChecker, tool_poses: numpy.typing.ArrayLike
         joint_step: float = 0.02  # largest joint motion between two checks [rad or m]
         max_branches: int = 64  # configurations of the first pose that are followed at most
     """
-def plan_drive_by(robot: Robot, group: JointGroup, world: World, *, start: numpy.typing.ArrayLike, tasks: collections.abc.Sequence[DriveByTask], goal: numpy.typing.ArrayLike, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, waypoints: int = 35, seeds: int = 8, solutions: int = 1, grasp_assignments: int = 8, goal_configurations: int = 64, iterations: int = 1500, time_limit: float = 600.0, jerk_time: float = 0.0, collisions: bool = True, seed: int = 1, threads: int = 1, solver: str = 'ipopt', tolerance: float = 0.0001, max_iterations: int = 150, solve_time_limit: float = 600.0, smoothing: float = 0.01, margin: float = 0.005, look_out: float = 0.15, refinements: int = 6) -> DriveByResult:
+def plan_drive_by(robot: Robot, group: JointGroup, world: World, *, start: numpy.typing.ArrayLike, tasks: collections.abc.Sequence[DriveByTask], goal: numpy.typing.ArrayLike, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, waypoints: int = 35, seeds: int = 8, solutions: int = 1, grasp_assignments: int = 8, goal_configurations: int = 64, iterations: int = 1500, time_limit: float = 600.0, jerk_time: float = 0.0, collisions: bool = True, seed: int = 1, threads: int = 1, solver: str = 'ipopt', tolerance: float = 0.0001, max_iterations: int = 150, solve_time_limit: float = 600.0, smoothing: float = 0.01, margin: float = 0.005, constraint_distance: float = 0.15, refinements: int = 6) -> DriveByResult:
     """
     The fastest motion of base and arm from `start` (n,), at rest, through the tasks in order to `goal`, at rest, without
     stopping for them (P1 chapter 4). goal: a configuration (n,), or (2, n) with lower and upper bounds, infinite where it
@@ -6451,10 +6537,10 @@ def plan_drive_by(robot: Robot, group: JointGroup, world: World, *, start: numpy
     Keyword options:
         waypoints: int = 35  # waypoints of the whole motion
         seeds: int = 8  # guesses tried until one leads to a solution
-        solutions: int = 1  # solutions compared of one choice of candidates
-        grasp_assignments: int = 8  # grasp_assignments of candidates planned; the fastest motion is returned; 1: the choice that looks quickest
+        solutions: int = 1  # solutions compared for one grasp assignment
+        grasp_assignments: int = 8  # assignments of a candidate to each task that are planned; the fastest motion is returned; 1: only the one that looks quickest
         goal_configurations: int = 64  # configurations sought per candidate
-        iterations: int = 1500  # of all solves; after so many no other begins
+        iterations: int = 1500  # iterations of all solves together; once they are spent no other solve begins
         time_limit: float = 600.0  # wall-clock cap [s]
         jerk_time: float = 0.0  # accelerations may go from 0 to their limit in no less [s]; 0: no limit
         collisions: bool = True  # the robot keeps clear of the world and of itself
@@ -6462,14 +6548,14 @@ def plan_drive_by(robot: Robot, group: JointGroup, world: World, *, start: numpy
         threads: int = 1  # 0: all; does not change the answer
         solver: str = 'ipopt'  # a name of nlp_solver_names()
         tolerance: float = 0.0001  # relative optimality
-        max_iterations: int = 150  # of one solve; an attempt has at most 1 + refinements
-        solve_time_limit: float = 600.0  # wall-clock cap of one attempt [s]
+        max_iterations: int = 150  # iterations of one solve; an optimisation takes at most 1 + refinements solves
+        solve_time_limit: float = 600.0  # wall-clock cap of one optimisation, which has 1 + refinements solves at most [s]
         smoothing: float = 0.01  # weight of the mean square of accelerations over their limits [s]
         margin: float = 0.005  # distance to keep from obstacles and from oneself [m]
-        look_out: float = 0.15  # pairs of bodies nearer than this are constrained [m]
+        constraint_distance: float = 0.15  # pairs of bodies nearer than this are constrained [m]
         refinements: int = 6  # times that collision constraints may be added
     """
-def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None = None, padding: float | mmgrasp._records.WorldPadding | collections.abc.Mapping[str, float | collections.abc.Mapping[str, float]] | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, on_solution: collections.abc.Callable[[Improvement], typing.Any] | None = None, planner: str = 'prm_star_mg', ik_solutions: int = 8, first_grasps: int = 4, straight: bool = True, ik_restarts: int = 30, joint_step: float = 0.02, workspace_step: float = 0.005, max_length: float = 0.0, time_limit: float = 15.0, seed: int = 1, threads: int = 0, batch: int = 0, lazy_grasps: bool = True, max_vertices: int = 0, shorten: bool = True, refinements: int = 4, vertices: int = 5000, gamma: float = 0.0, neighbours: int = 0, roadmap_seed: int = 1, max_iterations: int = 1000, range: float = 1.5, rrt_gamma: float = 0.0, exploration: float = 0.5, bidirectional: bool = True, informed: bool = True, goal_cost: float = 0.0, keep_trees: bool = False) -> ManipulationResult:
+def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None = None, padding: float | mmgrasp.records.WorldPadding | collections.abc.Mapping[str, float | collections.abc.Mapping[str, float]] | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, on_solution: collections.abc.Callable[[Improvement], typing.Any] | None = None, planner: str = 'prm_star_mg', ik_solutions: int = 8, first_grasps: int = 4, straight: bool = True, ik_restarts: int = 30, joint_step: float = 0.02, workspace_step: float = 0.005, max_length: float = 0.0, time_limit: float = 15.0, seed: int = 1, threads: int = 0, batch: int = 0, lazy_grasps: bool = True, max_vertices: int = 0, shorten: bool = True, refinements: int = 4, vertices: int = 5000, gamma: float = 0.0, neighbours: int = 0, roadmap_seed: int = 1, max_iterations: int = 1000, range: float = 1.5, rrt_gamma: float = 0.0, exploration: float = 0.5, bidirectional: bool = True, informed: bool = True, goal_cost: float = 0.0, keep_trees: bool = False) -> ManipulationResult:
     """
     Collision-free path of the group that carries the object from start to goal with the best of the grasps (P2 chapters 4 and 5). Every grasp is checked. `padding`: in place of that of the problem's world, see World.padding. `on_solution` is called with every better solution (an Improvement); what it raises ends the call.
     
@@ -6503,7 +6589,7 @@ def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None =
         goal_cost: float = 0.0  # rrt_star_mg: ends with the first path that costs no more; inf: the first at all
         keep_trees: bool = False  # rrt_star_mg: hand over the trees with the result
     """
-def plan_motion(robot: Robot | CollisionChecker, group: JointGroup | None = None, world: World | None = None, *, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike | None = None, tool_poses: numpy.typing.ArrayLike | None = None, regions: collections.abc.Sequence[ToolRegion] = [], via: numpy.typing.ArrayLike | None = None, orientation_constraint: OrientationConstraint | None = None, padding: float | mmgrasp._records.WorldPadding | collections.abc.Mapping[str, float | collections.abc.Mapping[str, float]] | None = None, on_solution: collections.abc.Callable[[Improvement], typing.Any] | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, planner: str = 'rrt_connect', time_limit: float = 5.0, max_iterations: int = 20000, range: float = 0.0, near_end_probability: float = 0.2, base_margin: float = 2.0, joint_step: float = 0.02, workspace_step: float = ..., shorten: bool = True, shorten_iterations: int = 200, ik_solutions: int = 8, region_samples: int = 16, seed: int = 1) -> MotionResult:
+def plan_motion(robot: Robot | CollisionChecker, group: JointGroup | None = None, world: World | None = None, *, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike | None = None, tool_poses: numpy.typing.ArrayLike | None = None, regions: collections.abc.Sequence[ToolRegion] = [], via: numpy.typing.ArrayLike | None = None, orientation_constraint: OrientationConstraint | None = None, padding: float | mmgrasp.records.WorldPadding | collections.abc.Mapping[str, float | collections.abc.Mapping[str, float]] | None = None, on_solution: collections.abc.Callable[[Improvement], typing.Any] | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, planner: str = 'rrt_connect', time_limit: float = 5.0, max_iterations: int = 20000, range: float = 0.0, near_end_probability: float = 0.2, base_margin: float = 2.0, joint_step: float = 0.02, workspace_step: float = ..., shorten: bool = True, shorten_iterations: int = 200, ik_solutions: int = 8, region_samples: int = 16, seed: int = 1) -> MotionResult:
     """
     A collision-free path of the group from `start` (n,) to any of its goals: `goal` (n,) or several as (m, n),
     `tool_poses` of the tip, (4, 4) or (m, 4, 4), and `regions` of them, reached by inverse kinematics; by way of the
@@ -6794,7 +6880,7 @@ def share_stops(drive_times: numpy.typing.ArrayLike, stop_times: collections.abc
     """
     Shares stops among robots so that the last is done as early as can be. `drive_times` is (n + 2 k, n + 2 k): stops, k starts, k goals; infinite: no way.
     """
-def shorten_drive_by(group: JointGroup, world: World, *, tasks: collections.abc.Sequence[DriveByTask], times: collections.abc.Sequence[float], positions: numpy.typing.ArrayLike, task_times: collections.abc.Sequence[float], progress: collections.abc.Callable[[str, float], typing.Any] | None = None, waypoints: int = 35, seeds: int = 8, solutions: int = 1, grasp_assignments: int = 8, goal_configurations: int = 64, iterations: int = 1500, time_limit: float = 600.0, jerk_time: float = 0.0, collisions: bool = True, seed: int = 1, threads: int = 1, solver: str = 'ipopt', tolerance: float = 0.0001, max_iterations: int = 150, solve_time_limit: float = 600.0, smoothing: float = 0.01, margin: float = 0.005, look_out: float = 0.15, refinements: int = 6) -> DriveByResult:
+def shorten_drive_by(group: JointGroup, world: World, *, tasks: collections.abc.Sequence[DriveByTask], times: collections.abc.Sequence[float], positions: numpy.typing.ArrayLike, task_times: collections.abc.Sequence[float], progress: collections.abc.Callable[[str, float], typing.Any] | None = None, waypoints: int = 35, seeds: int = 8, solutions: int = 1, grasp_assignments: int = 8, goal_configurations: int = 64, iterations: int = 1500, time_limit: float = 600.0, jerk_time: float = 0.0, collisions: bool = True, seed: int = 1, threads: int = 1, solver: str = 'ipopt', tolerance: float = 0.0001, max_iterations: int = 150, solve_time_limit: float = 600.0, smoothing: float = 0.01, margin: float = 0.005, constraint_distance: float = 0.15, refinements: int = 6) -> DriveByResult:
     """
     plan_drive_by from a motion that is known instead of guesses: positions (m, n) at times [s], straight between them, free of
     collisions, from rest to rest, at each task at its time; e.g. a drive and a pick one after the other. The answer is near that
@@ -6803,10 +6889,10 @@ def shorten_drive_by(group: JointGroup, world: World, *, tasks: collections.abc.
     Keyword options:
         waypoints: int = 35  # waypoints of the whole motion
         seeds: int = 8  # guesses tried until one leads to a solution
-        solutions: int = 1  # solutions compared of one choice of candidates
-        grasp_assignments: int = 8  # grasp_assignments of candidates planned; the fastest motion is returned; 1: the choice that looks quickest
+        solutions: int = 1  # solutions compared for one grasp assignment
+        grasp_assignments: int = 8  # assignments of a candidate to each task that are planned; the fastest motion is returned; 1: only the one that looks quickest
         goal_configurations: int = 64  # configurations sought per candidate
-        iterations: int = 1500  # of all solves; after so many no other begins
+        iterations: int = 1500  # iterations of all solves together; once they are spent no other solve begins
         time_limit: float = 600.0  # wall-clock cap [s]
         jerk_time: float = 0.0  # accelerations may go from 0 to their limit in no less [s]; 0: no limit
         collisions: bool = True  # the robot keeps clear of the world and of itself
@@ -6814,18 +6900,18 @@ def shorten_drive_by(group: JointGroup, world: World, *, tasks: collections.abc.
         threads: int = 1  # 0: all; does not change the answer
         solver: str = 'ipopt'  # a name of nlp_solver_names()
         tolerance: float = 0.0001  # relative optimality
-        max_iterations: int = 150  # of one solve; an attempt has at most 1 + refinements
-        solve_time_limit: float = 600.0  # wall-clock cap of one attempt [s]
+        max_iterations: int = 150  # iterations of one solve; an optimisation takes at most 1 + refinements solves
+        solve_time_limit: float = 600.0  # wall-clock cap of one optimisation, which has 1 + refinements solves at most [s]
         smoothing: float = 0.01  # weight of the mean square of accelerations over their limits [s]
         margin: float = 0.005  # distance to keep from obstacles and from oneself [m]
-        look_out: float = 0.15  # pairs of bodies nearer than this are constrained [m]
+        constraint_distance: float = 0.15  # pairs of bodies nearer than this are constrained [m]
         refinements: int = 6  # times that collision constraints may be added
     """
 def shortest_visiting_tour(lengths: numpy.typing.ArrayLike) -> TourResult:
     """
     Shortest way from start over all n stops to goal. `lengths` is (n + 2, n + 2): stops, start, goal; infinite: no way.
     """
-def simplify_mesh(mesh: Mesh, tolerance: float = 0.0) -> mmgrasp._records.MeshStandIn:
+def simplify_mesh(mesh: Mesh, tolerance: float = 0.0) -> mmgrasp.records.MeshStandIn:
     """
     The simplest solid that contains a mesh and has no point farther than `tolerance` [m] from it, as a dict:
     `shape` (a LinkShape in the mesh's frame), `chosen` (mesh, hull, box, sphere or cylinder), `triangles_saved` and

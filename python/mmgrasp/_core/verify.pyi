@@ -7,7 +7,7 @@ import mmgrasp._core
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['CheckedBody', 'CheckedDriveBy', 'CheckedFinger', 'CheckedGrasp', 'CheckedGrid', 'CheckedIntersection', 'CheckedLegFigures', 'CheckedMotion', 'CheckedPart', 'CheckedPick', 'CheckedRegion', 'CheckedStop', 'CheckedTray', 'Fault', 'PathCheckResult', 'PlanCheckResult', 'PlanToCheck', 'StopRate', 'check_path', 'check_plan', 'overlapping_bodies']
+__all__: list[str] = ['CheckedBody', 'CheckedDriveBy', 'CheckedFinger', 'CheckedGrasp', 'CheckedGrid', 'CheckedIntersection', 'CheckedLegValues', 'CheckedMotion', 'CheckedPart', 'CheckedPick', 'CheckedRegion', 'CheckedStop', 'CheckedTray', 'Fault', 'PathCheckResult', 'PlanCheckResult', 'PlanToCheck', 'StopRate', 'check_path', 'check_plan', 'overlapping_bodies']
 class CheckedBody:
     """
     A body of the scene as the plan file describes it.
@@ -44,9 +44,9 @@ class CheckedMotion:
     """
     One timed arm motion of a pick.
     """
-    def __init__(self, kind: str, opening: float, holding: bool, times: collections.abc.Sequence[float], positions: numpy.typing.ArrayLike, velocities: numpy.typing.ArrayLike, accelerations: numpy.typing.ArrayLike | None = None) -> None:
+    def __init__(self, kind: str, opening: float, attached: bool, times: collections.abc.Sequence[float], positions: numpy.typing.ArrayLike, velocities: numpy.typing.ArrayLike, accelerations: numpy.typing.ArrayLike | None = None) -> None:
         """
-        `kind`: transit, approach, lift, transfer or retreat; `opening` of the fingers [m]; `holding` the part; `times` (k,) [s];
+        `kind`: transit, approach, lift, transfer or retreat; `opening` of the fingers [m]; `attached`: the part is; `times` (k,) [s];
         `positions`, `velocities` and, where given, `accelerations` (k, n) of the arm's joints.
         """
 class CheckedPick:
@@ -83,7 +83,7 @@ class CheckedRegion:
         """
         `cells`: zeros and ones, (headings, ny, nx) flattened.
         """
-class CheckedLegFigures:
+class CheckedLegValues:
     """
     What a plan says about a leg of its route.
     """
@@ -306,6 +306,14 @@ class PlanToCheck:
     def intersections(self, arg0: collections.abc.Sequence[CheckedIntersection]) -> None:
         ...
     @property
+    def leg_values(self) -> list[CheckedLegValues]:
+        """
+        One a leg; empty: not given.
+        """
+    @leg_values.setter
+    def leg_values(self, arg0: collections.abc.Sequence[CheckedLegValues]) -> None:
+        ...
+    @property
     def lift_height(self) -> float:
         """
         Least straight way up after closing [m].
@@ -424,14 +432,6 @@ class PlanToCheck:
         """
     @route.setter
     def route(self, arg0: collections.abc.Sequence[collections.abc.Sequence[numpy.typing.ArrayLike]]) -> None:
-        ...
-    @property
-    def route_figures(self) -> list[CheckedLegFigures]:
-        """
-        One a leg; empty: not given.
-        """
-    @route_figures.setter
-    def route_figures(self, arg0: collections.abc.Sequence[CheckedLegFigures]) -> None:
         ...
     @property
     def searched(self) -> dict[str, CheckedTray]:

@@ -1,15 +1,21 @@
-"""Progress of long calls: bars on a terminal, one line a stage elsewhere."""
+"""What the commands share on a terminal: progress of long calls (bars, elsewhere one line a stage) and the answer at the end."""
 
 from __future__ import annotations
 
+import argparse
 import io
+import json
 import os
 import sys
 import time
+from collections.abc import Callable, Mapping
 from types import TracebackType
+from typing import Any
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
+
+from .._files import printable
 
 
 def open_streams() -> None:
@@ -71,3 +77,14 @@ class Reporter:
                 self._bars.update(task, completed=1.0)
             self._tasks[stage] = self._bars.add_task(stage, total=1.0)
         self._bars.update(self._tasks[stage], completed=fraction)
+
+
+def print_answer(
+    arguments: argparse.Namespace, console: Console, content: Mapping[str, Any], in_words: Callable[[], None]
+) -> None:
+    """The content as JSON where --json asks for it; else the answer in words, and where the report is."""
+    if arguments.json:
+        print(json.dumps(content, indent=1, allow_nan=False))
+        return
+    in_words()
+    console.print(f"report: {printable(str(arguments.out / 'report.html'))}", markup=False, soft_wrap=True)

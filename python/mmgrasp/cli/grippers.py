@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import argparse
-import json
 
 from rich.console import Console
 
-from .._files import printable, write_file
+from .._files import write_file
 from ..grippers.assembly_file import load_assembly
 from ..grippers.output import GRIPPER_FILES, GRIPPER_FOLDERS, result_to_dict, write_results
 from ..grippers.planning import GripperPlan, plan_grippers
-from .console import Reporter
+from .console import Reporter, print_answer
 from .exit_codes import DONE, exit_code
 from .output_folder import OutputFolder
 
@@ -33,11 +32,7 @@ def run_grippers(arguments: argparse.Namespace, console: Console) -> int:
                 write_gripper_pictures(plan, draft, report)
             write_file(draft / "report.html", gripper_report_html(plan, draft))
         report("writing", 1.0)
-    if arguments.json:
-        print(json.dumps(result_to_dict(plan), indent=1, allow_nan=False))
-    else:
-        _print(plan, console)
-        console.print(f"report: {printable(str(arguments.out / 'report.html'))}", markup=False, soft_wrap=True)
+    print_answer(arguments, console, result_to_dict(plan), lambda: _print(plan, console))
     return DONE if plan.solved else exit_code(plan.outcome)
 
 

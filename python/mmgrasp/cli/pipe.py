@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import argparse
-import json
 
 from rich.console import Console
 
 from .._core import Outcome
-from .._files import printable, write_file
+from .._files import write_file
 from ..pipes.output import PIPE_FILES, grasp_to_dict, result_to_dict, write_tables
 from ..pipes.planning import PipePlan, plan_pipe
 from ..pipes.problem import load_pipe_problem
-from .console import Reporter
+from .console import Reporter, print_answer
 from .exit_codes import DONE, exit_code
 from .output_folder import OutputFolder
 
@@ -42,11 +41,7 @@ def run_pipe(arguments: argparse.Namespace, console: Console) -> int:
 
             write_file(draft / "report.html", pipe_report_html(plan, draft))
         report("writing", 1.0)
-    if arguments.json:
-        print(json.dumps(result_to_dict(plan), indent=1, allow_nan=False))
-    else:
-        _print(plan, console)
-        console.print(f"report: {printable(str(arguments.out / 'report.html'))}", markup=False, soft_wrap=True)
+    print_answer(arguments, console, result_to_dict(plan), lambda: _print(plan, console))
     return DONE if plan.grasp is not None and plan.outcome != Outcome.stopped else exit_code(plan.outcome)
 
 

@@ -86,9 +86,9 @@ def problem_digest(problem: PartSupplyProblem, database: ReachDatabase) -> str:
     hasher.add([[j.name, j.closed, j.open, j.group] for j in gripper.joints])
     hasher.add([gripper.min_opening, list(gripper.openings)]).add(dict(gripper.preshape))
     hasher.add({key: value for key, value in problem.options.items() if key != "threads"})
-    for name in sorted(problem.scene.objects):
-        hasher.add(name).add(problem.scene.pose_of(name))
-        _add_shapes(hasher, problem.scene.shapes_of(name))
+    for name in sorted(problem.world.objects):
+        hasher.add(name).add(problem.world.pose_of(name))
+        _add_shapes(hasher, problem.world.shapes_of(name))
     for tray in problem.trays:
         hasher.add([tray.name, tray.T_world_tray, np.array(tray.size), list(tray.headings)])
         for part in tray.parts:

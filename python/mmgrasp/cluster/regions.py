@@ -66,7 +66,7 @@ def alone(problem: PartSupplyProblem, tray: int) -> PartSupplyProblem:
         problem.robot,
         problem.arm,
         problem.gripper,
-        problem.scene,
+        problem.world,
         trays,
         problem.home,
         problem.start,

@@ -33,8 +33,10 @@ RENAMED = {
     "tcp_link": "tool_link",
     "drop_gap": "drop_height",
     "width": "opening",  # of a grasp
+    "holding": "attached",
+    "lost_intersections": "too_small_intersections",
 }
-"""Keys of versions 1 and 2 of scenarios, robot profiles and plans by what they are called now."""
+"""Keys of earlier versions of scenarios, robot profiles and plans by what they are called now."""
 
 
 def near_miss(wrong: str, known: list[str]) -> str:

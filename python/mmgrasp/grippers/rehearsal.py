@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from .. import _core
 from .._core import AssemblyGrasp, AssemblyOperation, CollisionChecker, Gripper, JointGroup, PlacedMesh, Robot, World
+from .._turns import between, rotation_vector
 from .assembly_file import Assembly
 
 STEP, TURN = 0.0005, 0.01  # [m], [rad] between two looks
@@ -89,25 +90,7 @@ def _between(path: list[NDArray[np.float64]]) -> list[NDArray[np.float64]]:
     """Poses along straight lines and even turns, no farther apart than STEP and TURN."""
     out = [path[0]]
     for a, b in itertools.pairwise(path):
-        turn = _rotation_vector(a[:3, :3].T @ b[:3, :3])
-        angle = float(np.linalg.norm(turn))
+        angle = float(np.linalg.norm(rotation_vector(a[:3, :3].T @ b[:3, :3])))
         looks = max(1, int(np.ceil(max(float(np.linalg.norm(b[:3, 3] - a[:3, 3])) / STEP, angle / TURN))))
-        for k in range(1, looks + 1):
-            T = np.eye(4)
-            T[:3, 3] = a[:3, 3] + k / looks * (b[:3, 3] - a[:3, 3])
-            T[:3, :3] = a[:3, :3] @ _rotation(turn * k / looks)
-            out.append(T)
+        out += [between(a, b, k / looks) for k in range(1, looks + 1)]
     return out
-
-
-def _rotation_vector(R: NDArray[np.float64]) -> NDArray[np.float64]:
-    quat = _core.quat_xyzw_from_rotation(R)
-    sine = float(np.linalg.norm(quat[:3]))
-    return 2 * np.arctan2(sine, quat[3]) * quat[:3] / sine if sine > 1e-12 else np.zeros(3)
-
-
-def _rotation(vector: NDArray[np.float64]) -> NDArray[np.float64]:
-    angle = float(np.linalg.norm(vector))
-    axis = vector / angle if angle > 0 else np.array([0, 0, 1.0])
-    quat = np.append(np.sin(angle / 2) * axis, np.cos(angle / 2))
-    return np.asarray(_core.pose([0, 0, 0], quat_xyzw=quat))[:3, :3]

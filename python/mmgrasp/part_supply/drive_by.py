@@ -312,7 +312,7 @@ def _moving_group(plan: ScenarioPlan, problem: _core.PartSupplyProblem, opening:
 
 def _world(problem: _core.PartSupplyProblem, removed: set[tuple[int, int]]) -> World:
     """Scene and the parts still in place."""
-    world = problem.scene.copy()
+    world = problem.world.copy()
     for t, tray in enumerate(problem.trays):
         for p, part in enumerate(tray.parts):
             if (t, p) in removed:

@@ -12,7 +12,7 @@ from .._files import SCHEMAS
 from ..documents.reading import RENAMED, Node, read_json
 from ..scenario.schema import check_schema
 
-VERSION = 3
+VERSION = 4
 
 
 def read_plan(path: str | os.PathLike[str]) -> dict[str, Any]:
@@ -42,7 +42,7 @@ def check_names(root: Node) -> None:
     plan = root.raw
     parts = {part["name"]: part for part in plan["scenario"]["parts"]}
     trays = {tray["name"] for tray in plan["scenario"]["trays"]}
-    for key in ("regions", "intersections", "lost_intersections", "stops"):
+    for key in ("regions", "intersections", "too_small_intersections", "stops"):
         for node in root[key].elements():
             for tray in [node["tray"]] if key == "regions" else node["trays"].elements():
                 if tray.raw not in trays:

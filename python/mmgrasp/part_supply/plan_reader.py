@@ -158,13 +158,13 @@ def _read_answer(plan: checks.PlanToCheck, root: Node) -> None:
             for node in root["drive_by"]["motions"].elements()
         ]
     plan.lower_bound = root["lower_bound"].integer(least=0)
-    plan.route_figures = [
-        checks.CheckedLegFigures(*(leg[key].number() for key in ("length", "turning", "duration")))
+    plan.leg_values = [
+        checks.CheckedLegValues(*(leg[key].number() for key in ("length", "turning", "duration")))
         for leg in root["route"].elements()
     ]
     plan.intersections = [
         _read_intersection(node, headings)
-        for key in ("intersections", "lost_intersections")
+        for key in ("intersections", "too_small_intersections")
         for node in root[key].elements()
     ]
     plan.robustness_rate = root["robustness_rate"].number()
@@ -210,19 +210,19 @@ def _cells(node: Node, layers: int, ny: int, nx: int) -> np.ndarray:
     return cells.reshape(-1)
 
 
-def _read_motion(node: Node, kind: str, holding: bool, columns: int) -> checks.CheckedMotion:
+def _read_motion(node: Node, kind: str, attached: bool, columns: int) -> checks.CheckedMotion:
     times = node["times"].numbers()
     if not times:
         node["times"].fail("must not be empty")
     rows = [node[key].array(columns) for key in ("positions", "velocities", "accelerations")]
     if any(len(values) != len(times) for values in rows):
         node["times"].fail("must be as many as positions, velocities and accelerations")
-    return checks.CheckedMotion(kind, node["opening"].number(), holding, times, *rows)
+    return checks.CheckedMotion(kind, node["opening"].number(), attached, times, *rows)
 
 
 def _read_pick(node: Node, joints: int) -> checks.CheckedPick:
     motions = [
-        _read_motion(motion, motion["kind"].string(), motion["holding"].boolean(), joints)
+        _read_motion(motion, motion["kind"].string(), motion["attached"].boolean(), joints)
         for motion in node["motions"].elements()
     ]
     return checks.CheckedPick(

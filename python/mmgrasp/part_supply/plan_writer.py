@@ -10,7 +10,7 @@ import numpy as np
 from .. import _core
 from .._core import Hand, PartSupplyPlan, Robot
 from .._files import sha256_of
-from .._records import AddedLinkRow, UrdfRow
+from ..records import AddedLinkRow, UrdfRow
 from ..scenario import Scenario, TraySetup
 from ..scenario.shapes import pose_to_dict, shape_to_dict
 from .plan_file import VERSION
@@ -29,7 +29,7 @@ def plan_to_dict(scenario: Scenario, plan: PartSupplyPlan) -> dict[str, Any]:
         "grid": _grid(plan),
         "regions": [_region(region, plan) for region in plan.regions],
         "intersections": [_intersection(i, names) for i in plan.intersections.robust],
-        "lost_intersections": [_intersection(i, names) for i in plan.intersections.lost],
+        "too_small_intersections": [_intersection(i, names) for i in plan.intersections.too_small],
         "stops": [
             {
                 "pose": s.pose.tolist(),
@@ -241,7 +241,7 @@ def pick_to_dict(pick: _core.Pick, scenario: Scenario) -> dict[str, Any]:
             {
                 "kind": motion.kind,
                 "opening": motion.opening,
-                "holding": motion.holding,
+                "attached": motion.attached,
                 "times": t.times.tolist(),
                 "positions": t.positions.tolist(),
                 "velocities": t.velocities.tolist(),

@@ -46,7 +46,7 @@ class RoundMotion:
 
     def _pass(self, pick: _core.Pick, result: _core.DriveByResult) -> None:
         self._open_to(pick.motions[0].opening, self._part(pick))
-        self.opening = next(m.opening for m in pick.motions if m.holding)
+        self.opening = next(m.opening for m in pick.motions if m.attached)
         self._add(RobotMotion.of_drive_by(result, openings=[self.opening]))
 
     def _pick(self, pick: _core.Pick, left_out: Sequence[str]) -> None:

@@ -14,7 +14,7 @@ from .._options import CheckOptions
 from .._progress import Progress
 from ..documents.reading import Document, read_json
 from ..scenario import load_scenario
-from .figures import check_figures
+from .consistency import check_consistency
 from .plan_file import check_form
 from .plan_reader import allowed_collisions, plan_to_check
 from .plan_writer import scenario_to_dict
@@ -82,7 +82,7 @@ def verify_plan(
     if outcome != "solved":
         return PlanVerdict([checks.Fault("no-plan", "outcome", f"the file holds no plan: its outcome is {outcome}")])
     to_check = plan_to_check(root)
-    faults = check_figures(root.raw) + check_scans(root)
+    faults = check_consistency(root.raw) + check_scans(root)
     if scenario is not None:
         expected = scenario_to_dict(load_scenario(scenario, robot=robot, progress=progress))
         if "urdfs" not in root["scenario"]["robot"]:  # a plan from before these were kept

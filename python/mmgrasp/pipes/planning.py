@@ -15,12 +15,13 @@ from .._core import (
     ObjectPathResult,
     Outcome,
     SupportedFrame,
+    default_grasp_search,
     follow_object_path,
     optimize_grasp,
     time_parameterize,
 )
 from .._progress import Progress
-from .path_section import between, rotation_vector
+from .._turns import between, rotation_vector
 from .problem import PipeProblem
 
 POSITION_STEP, ROTATION_STEP = 0.01, 0.05  # of the pipe between two poses that the arm is computed for [m], [rad]
@@ -92,7 +93,7 @@ class PipePlan:
         if self.grasp is None:
             return "proven: no grasp can do it" if self.outcome == Outcome.infeasible else "no proof that there is none"
         if self.optimum.lower_bound <= 0:
-            return "the best of the search, not proven (algorithm: branch_and_bound proves it)"
+            return "the best of the search, not proven"
         return f"no grasp is more than {100 * self.gap:.2g} % cheaper, which is proven"
 
     @property
@@ -128,7 +129,7 @@ def plan_pipe(problem: PipeProblem, progress: Progress = None) -> PipePlan:
     optimum = optimize_grasp(
         task,
         problem.pipe,
-        **{"max_evaluations": 2000, **problem.search_options},
+        **{"algorithm": default_grasp_search(problem.arm), "max_evaluations": 2000, **problem.search_options},
         **problem.all_path_options,
         progress=progress,
     )
@@ -154,7 +155,7 @@ def plan_pipe(problem: PipeProblem, progress: Progress = None) -> PipePlan:
     plan.waypoint_times = _passing_times(plan.trajectory, plan.path.path)
     held = SupportedFrame(problem.frame, [plan.grasp])
     for T, time in zip(problem.T_world_pipe, plan.waypoint_times, strict=True):
-        state = held.state(gravity_in_pipe(problem, T))
+        state = held.state(problem.gravity_in_pipe(T))
         plan.sags.append(
             WaypointSag(
                 float(time),
@@ -166,13 +167,6 @@ def plan_pipe(problem: PipeProblem, progress: Progress = None) -> PipePlan:
             )
         )
     return plan
-
-
-def gravity_in_pipe(problem: PipeProblem, T_world_pipe: np.ndarray) -> np.ndarray:
-    """Gravity in the pipe's frame (3,) [m/s2]."""
-    g = float(problem.path_options.get("gravity", 9.81))
-    down: np.ndarray = T_world_pipe[:3, :3].T @ np.array([0.0, 0.0, -g])
-    return down
 
 
 def timed_motion(

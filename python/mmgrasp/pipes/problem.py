@@ -25,7 +25,16 @@ TOP_KEYS = "format version name structure start path robot"
 TOP_OPTIONAL = "gripper obstacles allowed_collisions padding preferences limits timing compare options"
 SHAPE_KEYS = "box cylinder sphere mesh shapes scale"
 PIPE = "pipe"
-SEARCH_OPTIONS = ("algorithm", "max_evaluations", "seed", "max_gap", "max_boxes", "time_limit", "threads")
+SEARCH_OPTIONS = (
+    "algorithm",
+    "max_evaluations",
+    "seed",
+    "max_gap",
+    "max_boxes",
+    "front_searches",
+    "time_limit",
+    "threads",
+)
 NOT_HERE = {"max_sag", "motion_weight", "deflection_weight", "manipulability_weight"} | {
     f"{word}_scale" for word in ("motion", "deflection", "manipulability")
 }
@@ -62,6 +71,12 @@ class PipeProblem:
     def all_path_options(self) -> dict[str, Any]:
         """Keywords of follow_object_path."""
         return {**self.path_options, **self.preferences.options, "max_sag": self.limits.sag}
+
+    def gravity_in_pipe(self, T_world_pipe: np.ndarray) -> np.ndarray:
+        """Gravity in the pipe's frame (3,) [m/s2]."""
+        usual = _core._object_path_option_table()["gravity"][0]
+        down: np.ndarray = -float(self.path_options.get("gravity", usual)) * T_world_pipe[2, :3]
+        return down
 
     def object_path_problem(self) -> ObjectPathProblem:
         """The same for the library: only the fingers may touch the pipe."""

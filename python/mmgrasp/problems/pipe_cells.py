@@ -264,13 +264,13 @@ def _fault_of_ends(cell: PipeCell) -> str:
 
 def _nearest(pipe: Pipe, world: World, T_world_pipe: Pose, ignored: str | None = None) -> float:
     """Distance of the pipe from the scene, without the bodies whose names begin as said [m]."""
-    scene = world.copy()
-    for name in scene.objects:
+    others = world.copy()
+    for name in others.objects:
         if ignored is not None and name.startswith(ignored):
-            scene.remove(name)
+            others.remove(name)
     body = Robot.from_strings(
         '<robot name="pipe"><link name="world"/><link name="rail"/><joint name="rail" type="prismatic">'
         '<parent link="world"/><child link="rail"/><limit lower="0" upper="1" velocity="1" effort="1"/></joint></robot>'
     ).with_link("pipe", "rail", T_world_pipe, pipe.shapes())
-    checker = CollisionChecker(body, scene, body.group(base_link="world", tip="pipe"))
+    checker = CollisionChecker(body, others, body.group(base_link="world", tip="pipe"))
     return checker.distance([0.0]).value

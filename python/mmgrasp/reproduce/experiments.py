@@ -71,7 +71,7 @@ def drive(seed: int, stops: list[list[float]], run: int) -> dict[str, Any]:
     order = _core.shortest_visiting_tour(np.linalg.norm(points[:, None] - points[None], axis=2)).order
     here, seconds, length = problem.start, 0.0, 0.0
     for target in [*(wanted[i] for i in order), problem.goal]:
-        leg = _core.plan_base_route(problem.arm, problem.scene, home=problem.home, start=here, goal=target)
+        leg = _core.plan_base_route(problem.arm, problem.world, home=problem.home, start=here, goal=target)
         if leg.outcome != _core.Outcome.solved:
             return {"seconds": None, "length": None}
         seconds += leg.duration(problem.robot)
@@ -83,7 +83,7 @@ def drive(seed: int, stops: list[list[float]], run: int) -> dict[str, Any]:
 def _missed(rng: np.random.Generator, problem: _core.PartSupplyProblem, target: np.ndarray) -> np.ndarray:
     """Where the base comes to stand: off by 0.10 m on average, evenly in all directions, and where it has room."""
     moving = problem.robot.group("arm", tip=problem.gripper.tool_link, with_base=True)
-    checker = _core.CollisionChecker(problem.robot, problem.scene, group=moving)
+    checker = _core.CollisionChecker(problem.robot, problem.world, group=moving)
     while True:
         pose: np.ndarray = target + [*rng.normal(0.0, UNCERTAINTY / np.sqrt(np.pi / 2), 2), 0.0]
         if checker.is_free([*pose, *problem.home]):

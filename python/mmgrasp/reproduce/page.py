@@ -56,7 +56,7 @@ def markdown(result: dict[str, Any], picture: str | None = None) -> str:
     lines += [
         f"Set-up: {setup}.",
         "",
-        f"({kind}seed {result['seed']}, {result['seconds']:g} s in all, {result['date']}, {machine['processor']}, "
+        f"({kind}seed {result['seed']}, {result['seconds']:g} s for this page, {result['date']}, {machine['processor']}, "
         f"{machine['cores']} cores, {machine['system']}, Python {machine['python']}, mmgrasp {machine['mmgrasp']})",
         "",
     ]

@@ -161,7 +161,7 @@ def draw(result: dict[str, Any]) -> Figure:
     from ..viz.raster import Camera
 
     bottle, setup = Bottle(), robot_setup()
-    painter = Painter(setup.robot, setup.gripper, bottle.scene(), [bottle.part()])
+    painter = Painter(setup.robot, setup.gripper, bottle.world(), [bottle.part()])
     states = result["drawing"]["states"]
     columns = len(states) // 2
     curves = result["drawing"]["curves"]

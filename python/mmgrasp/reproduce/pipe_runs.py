@@ -54,12 +54,12 @@ def plan_transfer(
         **options,
     )
     solved = result.outcome == Outcome.solved
-    better, ik_time = result.improvements, result.stats["ik_seconds"]
+    better, ik_time = result.improvements, result.stats.ik_seconds
     return {
         "solved": solved,
         "first time": better[0].seconds - ik_time if solved else None,
         "best time": better[-1].seconds - ik_time if solved else None,
-        "total time": result.stats["search_seconds"],
+        "total time": result.stats.search_seconds,
         "first cost": better[0].cost if solved else None,
         "cost": result.cost if solved else None,
         "ik time": ik_time,

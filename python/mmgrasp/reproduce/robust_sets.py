@@ -51,9 +51,9 @@ def run(context: Context) -> Result:
     values["stops"] = (3, len(stops.stops))
     values["proven least"] = (None, stops.lower_bound)
     chosen = sorted([t + 1 for t in stop.trays] for stop in stops.stops)
-    lost = sorted([t + 1 for t in s.trays] for s in sets.lost)
+    too_small = sorted([t + 1 for t in s.trays] for s in sets.too_small)
     result.exact("8 robust intersections are kept: 5 regions and 3 pairs", len(sets.robust) == 8)
-    result.exact("1-2-3 and 1-3, which are the same place, are discarded", [1, 3] in lost)
+    result.exact("1-2-3 and 1-3, which are the same place, are discarded", [1, 3] in too_small)
     result.exact("3 stops, proven least: {1,2} {3,4} {5}", chosen == [[1, 2], [3, 4], [5]] and stops.lower_bound == 3)
     result.drawing = {
         "kept": [[[t + 1 for t in s.trays], [float(v) for v in s.centre], s.radius] for s in sets.robust],

@@ -86,17 +86,17 @@ class Row:
     def problem(self, parts: Sequence[Sequence[Part]] | None = None) -> PartSupplyProblem:
         """The same as objects for the planner; `parts` of each tray instead of the regular grid's."""
         setup = robot_setup(self.torso)
-        scene, trays = World(), []
+        world, trays = World(), []
         middles = self.tray_middles()
         length = max(middles) - min(middles) + self.tray_size[1] + 0.1
-        scene.add_box(
+        world.add_box(
             "table top",
             [self.tray_size[0] + 0.04, length, TOP],
             _core.pose([0, (max(middles) + min(middles)) / 2, self.table - TOP / 2]),
         )
         for index, y in enumerate(middles):
             T_world_tray = self.tray_pose(y)
-            scene.add(f"tray {index}", _core.tray_shapes(self.tray_size, WALL), T_world_tray)
+            world.add(f"tray {index}", _core.tray_shapes(self.tray_size, WALL), T_world_tray)
             held = self._parts(index, T_world_tray) if parts is None else list(parts[index])
             trays.append(Tray(str(index), T_world_tray, self.tray_size, held, [0.0]))
         away = max(middles) + 3.0
@@ -104,7 +104,7 @@ class Row:
             setup.robot,
             setup.arm,
             setup.gripper,
-            scene,
+            world,
             trays,
             setup.home,
             [-1.5, min(middles) - 1.0, 0.0],

@@ -73,11 +73,11 @@ def boxes() -> dict[str, tuple[list[float], list[float]]]:
 
 
 def world() -> World:
-    scene = World()
+    out = World()
     for name, (size, at) in boxes().items():
-        scene.add_box(name, size, pose(at))
-    scene.add_box("floor", [8, 8, 0.02], pose([0, 0, -0.02]))
-    return scene
+        out.add_box(name, size, pose(at))
+    out.add_box("floor", [8, 8, 0.02], pose([0, 0, -0.02]))
+    return out
 
 
 def group(with_base: bool) -> JointGroup:
@@ -96,13 +96,13 @@ def goals(seed: int) -> tuple[tuple[float, ...], ...]:
     configurations that reach one, any is taken. Those are left out to which the straight joint line from the start is
     free. Whether there is a path is not asked.
     """
-    rng, arm, scene = np.random.default_rng([seed, 39]), group(False), world()
-    checker = CollisionChecker(robot(), scene, arm)
+    rng, arm, room = np.random.default_rng([seed, 39]), group(False), world()
+    checker = CollisionChecker(robot(), room, arm)
     found: dict[int, tuple[float, ...]] = {}
     while len(found) < len(CLEARANCES):
         at = rng.uniform([FRONT, -WIDTH / 2, BOARDS[0]], [FRONT + DEPTH, WIDTH / 2, BOARDS[-1]])
         tilt, turn = rng.uniform(-TILT, TILT, 2), rng.uniform(-np.pi, np.pi)
-        reached = arm.ik_all(pose(at, rpy=[0, *tilt]) @ pose([0, 0, 0], rpy=[turn, 0, 0]), 8, world=scene)
+        reached = arm.ik_all(pose(at, rpy=[0, *tilt]) @ pose([0, 0, 0], rpy=[turn, 0, 0]), 8, world=room)
         if len(reached) == 0:
             continue
         q = reached[rng.integers(len(reached))]

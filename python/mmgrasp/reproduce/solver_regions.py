@@ -56,7 +56,7 @@ class _Solver:
         self.home, self.arm, self.restarts = problem.home, problem.arm, restarts
         moving = problem.robot.group("arm", tip=problem.gripper.tool_link, with_base=True)
         reference = {"torso_lift_joint": torso}
-        world = problem.scene.copy()
+        world = problem.world.copy()
         for tray in problem.trays:
             for part in tray.parts:
                 world.add(part.name, part.shapes, part.T_world_part)

@@ -16,6 +16,7 @@ import numpy as np
 
 CONFIRMED, NO_DIFFERENCE, REVERSED = "confirmed", "no difference", "reversed"
 ANSWERS = (CONFIRMED, NO_DIFFERENCE, REVERSED)
+FEW = 8  # cells that are told one by one
 
 
 @dataclass(frozen=True)
@@ -38,6 +39,7 @@ class Difference:
     """Half the width of the 95 % interval of the mean."""
     cells: int
     by_seed: dict[int, float]
+    by_cell: dict[Hashable, float]
 
     @property
     def answer(self) -> str:
@@ -46,8 +48,11 @@ class Difference:
         return REVERSED if self.mean + self.half < 0 else NO_DIFFERENCE
 
     def __str__(self) -> str:
-        seeds = ", ".join(f"{value:+.3g}" for value in self.by_seed.values())
-        return f"{self.mean:+.3g} +- {self.half:.2g} ({self.cells} cells; by seed {seeds})"
+        if len(self.by_seed) == 1 and self.cells <= FEW:
+            parts = "; " + ", ".join(f"{cell} {value:+.3g}" for cell, value in self.by_cell.items())
+        else:
+            parts = "; by seed " + ", ".join(f"{value:+.3g}" for value in self.by_seed.values())
+        return f"{self.mean:+.3g} +- {self.half:.2g} ({self.cells} cells{parts})"
 
 
 def difference(pairs: Iterable[Pair]) -> Difference | None:
@@ -65,7 +70,8 @@ def difference(pairs: Iterable[Pair]) -> Difference | None:
         for seed in sorted({seed for seed, _ in means})
     }
     half = _student(len(deltas) - 1) * deltas.std(ddof=1) / math.sqrt(len(deltas))
-    return Difference(float(deltas.mean()), float(half), len(deltas), by_seed)
+    by_cell = {cell: mean for (_, cell), mean in means.items()} if len(by_seed) == 1 else {}
+    return Difference(float(deltas.mean()), float(half), len(deltas), by_seed, by_cell)
 
 
 def _student(freedom: int) -> float:

@@ -40,7 +40,7 @@ def stopping(samples: int, minimal: bool) -> dict[str, Any]:
     stops.sort(key=lambda s: s[0][1])  # the way leads along the row
     here, driving, picking, remaining = problem.start, 0.0, 0.0, {(t, 0) for t in range(len(problem.trays))}
     for pose, trays in [*stops, (problem.goal, [])]:
-        leg = _core.plan_base_route(problem.arm, problem.scene, home=problem.home, start=here, goal=pose)
+        leg = _core.plan_base_route(problem.arm, problem.world, home=problem.home, start=here, goal=pose)
         if leg.outcome != Outcome.solved:
             return {"solved": False}
         driving += leg.duration(problem.robot)
@@ -73,7 +73,7 @@ def passing(samples: int, seed: int) -> dict[str, Any]:
     found = _core.plan_drive_by(
         problem.robot,
         group,
-        problem.scene,
+        problem.world,
         start=[*problem.start, *problem.home],
         tasks=tasks,
         goal=[*problem.goal, *problem.home],

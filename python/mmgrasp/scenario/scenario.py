@@ -88,13 +88,13 @@ class Scenario:
     def problem(self) -> PartSupplyProblem:
         """The same as objects for the planner."""
         setup = self.setup
-        scene = self._obstacles()
-        self.rules.apply(scene)
+        world = self._obstacles()
+        self.rules.apply(world)
         return PartSupplyProblem(
             setup.robot,
             setup.arm,
             setup.gripper,
-            scene,
+            world,
             [t.tray for t in self.trays],
             setup.home,
             self.start,

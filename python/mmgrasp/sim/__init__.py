@@ -2,7 +2,7 @@
 
     from mmgrasp import sim
 
-    run = sim.Simulation(robot, scene, [sim.SimPart("box", shapes, T_world_box)], gripper=gripper).run(trajectory, arm=arm)
+    run = sim.Simulation(robot, world, [sim.SimPart("box", shapes, T_world_box)], gripper=gripper).run(trajectory, arm=arm)
     run.grasped, run.parts["box"].cause, run.contacts
 
 Closed loops: give `SimScene.drive` a controller of your own (see `sim.control`). Needs the extra `sim` (docs/methods/sim.md). Pictures of a run need nothing more: see `frames`.

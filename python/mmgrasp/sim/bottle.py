@@ -38,11 +38,11 @@ class Bottle:
     push: bool = True
     """Push-grasp with the hand at TOOL_SPEED, or with the hand still while the base drives on."""
 
-    def scene(self) -> World:
+    def world(self) -> World:
         """The table."""
-        scene = World()
-        scene.add_box("table", [1.4, 0.5, TABLE], _core.pose([2.0, -0.9, TABLE / 2]))
-        return scene
+        world = World()
+        world.add_box("table", [1.4, 0.5, TABLE], _core.pose([2.0, -0.9, TABLE / 2]))
+        return world
 
     def part(self) -> SimPart:
         """The bottle, standing on it."""
@@ -73,7 +73,7 @@ class Bottle:
         """The motion and the time at which the hand begins to close [s]; the first direction that works is taken."""
         setup = robot_setup()
         robot = planned_robot()
-        world = self.scene()
+        world = self.world()
         part = self.part()
         world.add(part.name, part.shapes, _core.pose([0, 0, CLEARANCE]) @ part.pose)
         group = robot.group("arm_with_torso", tip=setup.gripper.tool_link, with_base=True)
@@ -90,7 +90,7 @@ class Bottle:
     def simulation(self) -> Simulation:
         """Robot, table and bottle in physics."""
         setup = robot_setup()
-        return Simulation(setup.robot, self.scene(), [self.part()], gripper=setup.gripper, joints=setup.other_joints)
+        return Simulation(setup.robot, self.world(), [self.part()], gripper=setup.gripper, joints=setup.other_joints)
 
     def run(self, found: _core.DriveByResult, close_at: float, /, **execution: Unpack[ExecutionOptions]) -> SimResult:
         """The motion carried out with a little noise of wheels and localisation; the bottle rides along, then 2 s more."""

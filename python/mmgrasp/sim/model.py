@@ -113,7 +113,7 @@ class Built:
 
 def build(
     robot: Robot,
-    scene: World,
+    world: World,
     parts: Iterable[SimPart] = (),
     gripper: Hand | None = None,
     physics: Physics | None = None,
@@ -125,7 +125,7 @@ def build(
     physics = physics or Physics()
     physics.check()
     loose = {part.name: part for part in parts}
-    return _Builder(SceneBodies.of_world(robot, scene, loose.values()), loose, gripper, physics).built
+    return _Builder(SceneBodies.of_world(robot, world, loose.values()), loose, gripper, physics).built
 
 
 class _Builder:

@@ -98,11 +98,11 @@ class Passing:
         close_at = v / ACCELERATION + (begin - first - ramp) / v
         return JointTrajectory(["x", "y", "theta", *arm.names], times, rows), close_at
 
-    def scene(self) -> World:
+    def world(self) -> World:
         """The table."""
-        scene = World()
-        scene.add_box("table", [3.0, 0.5, TABLE], _core.pose([PLACE[0], PLACE[1] - 0.1, TABLE / 2]))
-        return scene
+        world = World()
+        world.add_box("table", [3.0, 0.5, TABLE], _core.pose([PLACE[0], PLACE[1] - 0.1, TABLE / 2]))
+        return world
 
     def part(self) -> SimPart:
         """The box where it really stands."""
@@ -112,7 +112,7 @@ class Passing:
     def simulation(self) -> Simulation:
         """Robot, table and box in physics."""
         setup = robot_setup()
-        return Simulation(setup.robot, self.scene(), [self.part()], gripper=setup.gripper)
+        return Simulation(setup.robot, self.world(), [self.part()], gripper=setup.gripper)
 
     def run(self, simulation: Simulation | None = None, **execution: Unpack[ExecutionOptions]) -> SimResult:
         """Executes the plan with a little noise of wheels and localisation."""
@@ -140,7 +140,7 @@ def posture() -> tuple[_core.JointGroup, np.ndarray]:
     setup = robot_setup()
     arm = setup.arm.with_reference({**setup.other_joints, **setup.gripper.joint_values(setup.gripper.max_opening)})
     checker = _core.CollisionChecker(
-        setup.robot, Passing().scene(), group=arm.at(_core.pose([PLACE[0] - TOOL[0], 0, 0]))
+        setup.robot, Passing().world(), group=arm.at(_core.pose([PLACE[0] - TOOL[0], 0, 0]))
     )
     for seed in range(1, 50):
         found = arm.ik(_core.pose(list(TOOL)), rng_seed=seed)

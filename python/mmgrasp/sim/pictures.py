@@ -30,8 +30,8 @@ FLOOR_REACH = 4.0  # of the floor drawn round what the camera looks at [m]
 class Painter:
     """Draws recorded states of a robot, a scene and parts with the software renderer. Needs no MuJoCo."""
 
-    def __init__(self, robot: Robot, gripper: Hand | None, scene: World, parts: Iterable[SimPart]):
-        self.bodies = SceneBodies.of_world(robot, scene, parts)
+    def __init__(self, robot: Robot, gripper: Hand | None, world: World, parts: Iterable[SimPart]):
+        self.bodies = SceneBodies.of_world(robot, world, parts)
         self.fingers = set(gripper.finger_links) if gripper else set()
         self.limits = {j["name"]: (j["lower"], j["upper"]) for j in robot.joint_table}
 
@@ -111,7 +111,7 @@ def frames(
     camera = Camera(np.asarray(eye, float), np.asarray(target, float), width, height)
     if renderer == "mujoco":
         return _mujoco_frames(sim, states, camera)
-    painter = Painter(sim.robot, sim.gripper, sim.scene, sim.parts.values())
+    painter = Painter(sim.robot, sim.gripper, sim.world, sim.parts.values())
     return [painter.picture(state, camera) for state in states]
 
 

@@ -33,7 +33,7 @@ class SimScene:
     def __init__(
         self,
         robot: Robot,
-        scene: World,
+        world: World,
         parts: Iterable[SimPart] = (),
         *,
         gripper: Hand | None = None,
@@ -42,10 +42,10 @@ class SimScene:
     ):
         """`joints`: where joints stand that a trajectory does not name. Raises InvalidInput without MuJoCo."""
         self.mujoco = mujoco_module()
-        self.robot, self.scene, self.gripper = robot, scene.copy(), gripper
+        self.robot, self.world, self.gripper = robot, world.copy(), gripper
         self.physics = physics or Physics()
         self.parts = {part.name: part for part in parts}
-        self.built = build(robot, scene, self.parts.values(), gripper, self.physics)
+        self.built = build(robot, world, self.parts.values(), gripper, self.physics)
         self.joints = dict(joints or {})
         for name in self.joints:
             if name not in self.built.joints:

@@ -10,7 +10,7 @@ import numpy as np
 
 from .._core import SupportedFrame
 from ..bodies import Body, SceneBodies, floor_tiles, moved
-from ..pipes.planning import PipePlan, gravity_in_pipe
+from ..pipes.planning import PipePlan
 from .pictures import _pyplot, _save
 from .png import write_png
 from .raster import Camera, Scene, render
@@ -44,7 +44,7 @@ def deformed_sections(plan: PipePlan, pose: int, scale: float) -> list[tuple[np.
     assert plan.grasp is not None
     problem, T = plan.problem, plan.problem.T_world_pipe[pose]
     held = SupportedFrame(problem.frame, [plan.grasp])
-    gravity = gravity_in_pipe(problem, T)
+    gravity = problem.gravity_in_pipe(T)
     nodes = np.asarray(problem.pipe.nodes)
     out = []
     for i, (a, b) in enumerate(problem.pipe.sections):

@@ -39,18 +39,18 @@ def _headline(plan: PipePlan) -> str:
         f"<p class='lead'>{plural(len(problem.pipe.sections), 'section')}, {1e3 * problem.frame.mass:.0f} g, "
         f"{plural(len(problem.T_world_pipe), 'pose')}, robot {escape(problem.robot.name)}; mmgrasp {_core.__version__}</p>"
     )
-    if plan.trajectory is None:
+    if plan.trajectory is None or plan.path is None:
         return f"<h1>No grasp for {escape(problem.name)}: {plan.outcome.name.replace('_', ' ')}</h1>{lead}"
     worst = max(plan.sags, key=lambda row: row.sag)
     cards = [
         (f"{1e3 * worst.sag:.2f} mm", "largest sag at rest at a pose of the path"),
-        (f"{plan.optimum.path.joint_motion:.2f} rad", "joint motion"),
+        (f"{plan.path.joint_motion:.2f} rad", "joint motion"),
         (clock(plan.trajectory.duration), "the arm's motion takes"),
     ]
     stress = max((row.stress for row in plan.sags if row.stress is not None), default=None)
     if stress is not None:
         cards.append((f"{1e-6 * stress:.1f} MPa", "largest stress"))
-    cards.append((f"{plan.optimum.path.cost:.3f}", f"cost; {plan.proof}"))
+    cards.append((f"{plan.path.cost:.3f}", f"cost; {plan.proof}"))
     tiles = "".join(f'<div class="card"><b>{escape(a)}</b><span>{escape(b)}</span></div>' for a, b in cards)
     return f"<h1>{escape(problem.name)}: where to hold the pipe</h1>{lead}<div class='cards'>{tiles}</div>"
 
@@ -104,8 +104,8 @@ def _compared(plan: PipePlan) -> str:
             continue
         costs = (found.cost, found.joint_motion, 1e3 * found.deflection, found.force_manipulability)
         rows.append([where, *(f"{value:.3f}" for value in costs)])
-    if plan.grasp is not None:
-        best = plan.optimum.path
+    best = plan.path
+    if best is not None:
         costs = (best.cost, best.joint_motion, 1e3 * best.deflection, best.force_manipulability)
         rows.append(["<b>the best</b>", *(f"{value:.3f}" for value in costs)])
     head = ["grasp", "cost", "joint motion [rad]", "sum of the sags [mm]", "force manipulability"]

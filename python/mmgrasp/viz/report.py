@@ -269,7 +269,7 @@ def _alternatives(plan: dict[str, Any]) -> str:
         else:
             verdict = f"would not lead to fewer than {plan['lower_bound']} stops"
         rows.append((item, verdict))
-    for item in plan["lost_intersections"]:
+    for item in plan["too_small_intersections"]:
         rows.append((item, f"its disc of {item['radius']:.3f} m is smaller than the uncertainty of {bound:.3f} m"))
     rows.sort(key=lambda r: (-len(r[0]["trays"]), -r[0]["radius"]))
     shown = [

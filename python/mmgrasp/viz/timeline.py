@@ -93,7 +93,7 @@ class Timeline:
             clock = self._add(leaving)
             motions = [m for m in motions if m["kind"] in ("transfer", "retreat")]
         for motion in motions:
-            attached = in_hand if motion["holding"] else None
+            attached = in_hand if motion["attached"] else None
             binned = removed | {name} if motion["kind"] == "retreat" else removed
             label = f"{motion['kind']} {name}"
             segment = Segment(label, clock, float(motion["times"][-1]), "motion", motion, attached, binned, base)

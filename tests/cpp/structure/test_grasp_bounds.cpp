@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "beam_frames.hpp"
+#include "carried_pipe.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/random.hpp"
 #include "mmgrasp/robot/ik_branches.hpp"
 #include "mmgrasp/structure/optimize_grasp.hpp"
+#include "structure/object_path/collision_proof.hpp"
 #include "structure/object_path/path_bound.hpp"
-#include "support/puma_arm.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -176,30 +176,11 @@ TEST(SagBound, StaysBelowAndComesNear) {
   }
 }
 
-ObjectPathProblem turning_path(int poses) {
-  static const test::PumaArm arm;
-  ObjectPathProblem problem{arm.group(), {}, figure_3_4().shapes(), {}, {}, {"l5", "l6"}, figure_3_4_frame(), "pipe"};
-  for (int i = 0; i < poses; ++i) {
-    const double turn = -0.3 + 0.12 * i;
-    problem.T_world_object.push_back(
-        pose_from_xyz_rpy({0.5 * std::cos(turn), 0.5 * std::sin(turn), 0.45 + 0.01 * i}, {0, 0.05 * i, turn}));
-  }
-  problem.world.add("post", Cylinder{0.05, 0.6}, pose_from_xyz_rpy({0.25, 0.22, 0.3}, {0, 0, 0}));
-  return problem;
-}
-
-PipeGraspOptions tool() {
-  PipeGraspOptions options;
-  options.approach = Vector3d::UnitZ();
-  options.closing = Vector3d::UnitX();
-  return options;
-}
-
 TEST(PathBound, NoGraspOfABoxCostsLess) {
-  const ObjectPathProblem problem = turning_path(6);
+  const ObjectPathProblem problem = arc_past_post(6);
   const Pipe pipe = figure_3_4();
   const ObjectPathOptions options;
-  const detail::PathBound bound(problem, pipe, options, tool());
+  const detail::PathBound bound(problem, pipe, options, puma_tool());
   ObjectPathEvaluator evaluator(problem, options);
   Rng rng(11);
   int feasible = 0, tight = 0;
@@ -216,7 +197,7 @@ TEST(PathBound, NoGraspOfABoxCostsLess) {
     const auto found = bound.graph(box).bound();
     for (int k = 0; k < 4; ++k) {
       const Grasp grasp = place_pipe_grasp(pipe, box.section, box.length + rng.uniform(-1, 1) * box.half_length,
-                                           box.angle + rng.uniform(-1, 1) * box.half_angle, box.flipped, tool());
+                                           box.angle + rng.uniform(-1, 1) * box.half_angle, box.flipped, puma_tool());
       const ObjectPathResult result = evaluator.evaluate(grasp);
       if (result.outcome != Outcome::solved) continue;
       ++feasible;
@@ -228,12 +209,61 @@ TEST(PathBound, NoGraspOfABoxCostsLess) {
   EXPECT_GT(tight, 20);
 }
 
+/// What is excluded collides with every grasp of the box, and something is.
+TEST(CollisionProof, ExcludesWhatCollidesEverywhereInTheBox) {
+  ObjectPathProblem problem = arc_past_post(3);
+  problem.world.add("wall", Box{{0.3, 1.5, 1.5}}, pose_from_xyz_rpy({-0.25, 0, 0.7}, {0, 0, 0}));
+  problem.world.add("roof", Box{{1.5, 1.5, 0.4}}, pose_from_xyz_rpy({0, 0, 0.95}, {0, 0, 0}));
+  const Pipe pipe = figure_3_4();
+  const detail::PathBound bound(problem, pipe, {}, puma_tool());
+  detail::CollisionProof proof(problem);
+  detail::AttachedObject object(problem);
+  Rng rng(2);
+  int excluded = 0, checked = 0;
+  for (int trial = 0; trial < 2000; ++trial) {
+    GraspBox box;
+    box.section = static_cast<int>(rng.index(6));
+    box.flipped = rng.index(2) == 1;
+    box.half_length = 3e-4;
+    box.half_angle = 1e-3;
+    box.length = rng.uniform(0.03, pipe.length(box.section) - 0.03);
+    box.angle = rng.uniform(-M_PI, M_PI);
+    const auto place = [&](double x, double y) {
+      return place_pipe_grasp(pipe, box.section, box.length + x * box.half_length, box.angle + y * box.half_angle,
+                              box.flipped, puma_tool());
+    };
+    detail::BoxGraph graph = bound.graph(box);
+    const std::vector<int> branches = graph.bound().branches;
+    if (branches.empty() || !proof.exclude(graph, branches, place(0, 0))) continue;
+    for (std::size_t i = 0; i < branches.size(); ++i) {
+      if (graph.alive(i, branches[i])) continue;
+      ++excluded;
+      const detail::FormConfiguration& q = graph.configuration(i, branches[i]);
+      for (int k = 0; k < 20; ++k) {
+        const double x = rng.uniform(-1, 1), y = rng.uniform(-1, 1);
+        const Grasp grasp = place(x, y);
+        for (const Eigen::VectorXd& found :
+             solve_ik_branches(problem.group, problem.T_world_object[i] * grasp.T_object_hand, {}, {}, 0, {}, true)
+                 .solutions) {
+          bool inside = true;
+          for (int j = 0; j < 6; ++j) inside = inside && std::abs(found[j] - value(q[j], x, y)) <= q[j].error + 1e-7;
+          if (!inside) continue;
+          ++checked;
+          EXPECT_FALSE(object.hold(grasp).is_free(found));
+        }
+      }
+    }
+  }
+  EXPECT_GT(excluded, 20);
+  EXPECT_GT(checked, 200);
+}
+
 TEST(BranchAndBound, ProvesTheOptimumOfAGrid) {
-  const ObjectPathProblem problem = turning_path(6);
+  const ObjectPathProblem problem = arc_past_post(6);
   const Pipe pipe = figure_3_4();
   GraspSearchOptions options;
   options.algorithm = "branch_and_bound";
-  options.grasp = tool();
+  options.grasp = puma_tool();
   options.population.max_evaluations = 300;
   const GraspOptimum best = optimize_grasp(problem, pipe, {}, options);
   ASSERT_EQ(best.outcome, Outcome::solved);
@@ -245,7 +275,8 @@ TEST(BranchAndBound, ProvesTheOptimumOfAGrid) {
     for (double at = 0.02; at <= pipe.length(section) - 0.02 + 1e-9; at += 0.005) {
       for (int degree = -180; degree < 180; degree += 2) {
         for (const bool flip : {false, true}) {
-          const auto found = evaluator.evaluate(place_pipe_grasp(pipe, section, at, degree * M_PI / 180, flip, tool()));
+          const auto found =
+              evaluator.evaluate(place_pipe_grasp(pipe, section, at, degree * M_PI / 180, flip, puma_tool()));
           if (found.outcome == Outcome::solved) grid = std::min(grid, found.cost);
         }
       }
@@ -259,14 +290,15 @@ TEST(BranchAndBound, ProvesTheOptimumOfAGrid) {
   EXPECT_EQ(again.path.cost, best.path.cost);
   EXPECT_EQ(again.lower_bound, best.lower_bound);
   EXPECT_EQ(again.boxes, best.boxes);
+  EXPECT_EQ(again.evaluations, best.evaluations);
 }
 
 TEST(BranchAndBound, ProvesThatNoGraspWillDo) {
-  ObjectPathProblem problem = turning_path(6);
+  ObjectPathProblem problem = arc_past_post(6);
   problem.T_world_object[4].translation() = Vector3d(4, 0, 0);
   GraspSearchOptions options;
   options.algorithm = "branch_and_bound";
-  options.grasp = tool();
+  options.grasp = puma_tool();
   options.population.max_evaluations = 50;
   const GraspOptimum none = optimize_grasp(problem, figure_3_4(), {}, options);
   EXPECT_EQ(none.outcome, Outcome::infeasible);

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "beam_frames.hpp"
+#include "carried_pipe.hpp"
 #include "enumerated_path.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/random.hpp"
@@ -19,36 +19,14 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-/// Pipe1 of P2 along an arc around the arm, with posts that some arm configurations hit.
 ObjectPathProblem arc(int poses, bool posts = true) {
-  static const test::PumaArm arm;
-  const Pipe pipe = figure_3_4();
-  ObjectPathProblem problem{arm.group(), {}, pipe.shapes(), {}, {}, {"l5", "l6"}, figure_3_4_frame(), "pipe"};
-  for (int i = 0; i < poses; ++i) {
-    const double turn = -0.3 + 0.12 * i;
-    problem.T_world_object.push_back(
-        pose_from_xyz_rpy({0.5 * std::cos(turn), 0.5 * std::sin(turn), 0.45 + 0.01 * i}, {0, 0.05 * i, turn}));
-  }
-  if (posts) {
-    problem.world.add("post", Cylinder{0.05, 0.6}, pose_from_xyz_rpy({0.25, 0.22, 0.3}, {0, 0, 0}));
-    problem.world.add("shelf", Box{{0.6, 1.2, 0.04}}, pose_from_xyz_rpy({0.4, 0, 1.02}, {0, 0, 0}));
-  }
+  ObjectPathProblem problem = posts ? arc_past_post(poses) : free_arc(poses);
+  if (posts) problem.world.add("shelf", Box{{0.6, 1.2, 0.04}}, pose_from_xyz_rpy({0.4, 0, 1.02}, {0, 0, 0}));
   return problem;
 }
 
 Grasp grasp_at(int section, double length, double angle) {
-  PipeGraspOptions options;
-  options.approach = Vector3d::UnitZ();
-  options.closing = Vector3d::UnitX();
-  return place_pipe_grasp(figure_3_4(), section, length, angle, false, options);
-}
-
-std::vector<Grasp> some_grasps(int count, unsigned seed = 5) {
-  PipeGraspOptions options;
-  options.approach = Vector3d::UnitZ();
-  options.closing = Vector3d::UnitX();
-  options.seed = seed;
-  return sample_pipe_grasps(figure_3_4(), count, options).grasps;
+  return place_pipe_grasp(figure_3_4(), section, length, angle, false, puma_tool());
 }
 
 TEST(ObjectPath, EqualsEnumeration) {
@@ -64,7 +42,7 @@ TEST(ObjectPath, EqualsEnumeration) {
     }
     if (scene == std::string("strict")) options.position_tolerance = 8e-4;
     ObjectPathEvaluator evaluator(problem, options);
-    for (const Grasp& grasp : some_grasps(60)) {
+    for (const Grasp& grasp : some_grasps(60, 5)) {
       const ObjectPathResult found = evaluator.evaluate(grasp);
       const Enumerated truth(problem, grasp, options, all_branches(problem.group));
       EXPECT_EQ(found.violations, truth.violations);
@@ -90,7 +68,7 @@ TEST(ObjectPath, CostIsTheWeightedSumOverScales) {
   options.motion_scale = 2;
   options.deflection_scale = 1e-4;
   options.manipulability_scale = 0.5;
-  for (const Grasp& grasp : some_grasps(40)) {
+  for (const Grasp& grasp : some_grasps(40, 5)) {
     const ObjectPathResult found = follow_object_path(problem, grasp, options);
     if (found.outcome != Outcome::solved) continue;
     EXPECT_NEAR(
@@ -116,7 +94,7 @@ TEST(ObjectPath, SingleConfigurationsNeverCostLess) {
   single.single_configuration = true;
   ObjectPathEvaluator all(problem), one(problem, single);
   int dearer = 0, both = 0;
-  for (const Grasp& grasp : some_grasps(60)) {
+  for (const Grasp& grasp : some_grasps(60, 5)) {
     const ObjectPathResult a = all.evaluate(grasp), b = one.evaluate(grasp);
     if (b.outcome != Outcome::solved) continue;
     ASSERT_EQ(a.outcome, Outcome::solved);
@@ -128,11 +106,54 @@ TEST(ObjectPath, SingleConfigurationsNeverCostLess) {
   EXPECT_GT(dearer, 5);
 }
 
+/// Of the sequences that keep to the nearest configuration from where the arm stands: there is one.
+TEST(ObjectPath, ASingleConfigurationBeginsWhereTheArmStands) {
+  ObjectPathProblem problem = arc(6, false);
+  ObjectPathOptions single;
+  single.single_configuration = true;
+  single.all_turns = false;
+  Rng rng(4);
+  int solved = 0, postures = 0;
+  for (const Grasp& grasp : some_grasps(20, 5)) {
+    double first_cost = 0;
+    for (int home = 0; home < 6; ++home) {
+      VectorXd stands(6);
+      for (int j = 0; j < 6; ++j) stands[j] = rng.uniform(problem.group.lower()[j], problem.group.upper()[j]);
+      problem.group = problem.group.with_reference(problem.group.full_values(stands));
+      std::vector<VectorXd> nearest;
+      VectorXd last = stands;
+      double step = 0;
+      for (const Pose& T : problem.T_world_object) {
+        const std::vector<VectorXd> all = solve_ik_branches(problem.group, T * grasp.T_object_hand).solutions;
+        if (all.empty()) break;
+        const auto best = std::min_element(all.begin(), all.end(), [&](const VectorXd& a, const VectorXd& b) {
+          return (a - last).norm() < (b - last).norm();
+        });
+        if (!nearest.empty()) step = std::max(step, (*best - last).cwiseAbs().maxCoeff());
+        nearest.push_back(*best);
+        last = *best;
+      }
+      const ObjectPathResult found = ObjectPathEvaluator(problem, single).evaluate(grasp);
+      if (nearest.size() < problem.T_world_object.size() || step > single.max_joint_step) {
+        EXPECT_EQ(found.outcome, Outcome::not_found);
+        continue;
+      }
+      if (found.outcome != Outcome::solved) continue;  // collides with itself, or leaves the path
+      ++solved;
+      for (std::size_t i = 0; i < nearest.size(); ++i) EXPECT_LT((found.path.waypoints[i] - nearest[i]).norm(), 1e-6);
+      if (first_cost == 0) first_cost = found.cost;
+      postures += std::abs(found.cost - first_cost) > 1e-6;
+    }
+  }
+  EXPECT_GT(solved, 20);
+  EXPECT_GT(postures, 5);  // where it stands matters
+}
+
 TEST(ObjectPath, TellsJumpsFromReach) {
   ObjectPathProblem problem = arc(2, false);
   problem.T_world_object[1] = pose_from_xyz_rpy({-0.3, 0.4, 0.5}, {0, 0, 2.2});  // far away in one step
   int reached = 0;
-  for (const Grasp& grasp : some_grasps(40)) {
+  for (const Grasp& grasp : some_grasps(40, 5)) {
     const ObjectPathResult found = follow_object_path(problem, grasp);
     EXPECT_EQ(found.outcome, Outcome::not_found);
     if (found.violations == std::vector<int>{0, 0}) {
@@ -150,7 +171,7 @@ TEST(ObjectPath, TellsJumpsFromReach) {
 TEST(ObjectPath, OneEvaluatorAnswersAsManyDo) {
   const ObjectPathProblem problem = arc(6);
   ObjectPathEvaluator shared(problem);
-  std::vector<Grasp> grasps = some_grasps(30);
+  std::vector<Grasp> grasps = some_grasps(30, 5);
   grasps.insert(grasps.end(), grasps.rbegin(), grasps.rend());
   for (const Grasp& grasp : grasps) {
     const ObjectPathResult a = shared.evaluate(grasp), b = ObjectPathEvaluator(problem).evaluate(grasp);
@@ -169,7 +190,7 @@ TEST(ObjectPath, LimitsOfSagAndStressAreThoseOfTheFrame) {
   options.max_sag = 1.5e-3;
   ObjectPathEvaluator limited(problem, options);
   int good = 0, bent = 0, stressed = 0;
-  for (const Grasp& grasp : some_grasps(60)) {
+  for (const Grasp& grasp : some_grasps(60, 5)) {
     const ObjectPathResult before = plain.evaluate(grasp), after = limited.evaluate(grasp);
     const SupportedFrame held(*problem.frame, {beam_support(grasp)});
     std::vector<int> over;

@@ -3,38 +3,19 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
-#include "beam_frames.hpp"
+#include "carried_pipe.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "structure/object_path/grasp_variables.hpp"
-#include "support/puma_arm.hpp"
 
 namespace mmgrasp {
 namespace {
 
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-
-ObjectPathProblem arc(int poses) {
-  static const test::PumaArm arm;
-  ObjectPathProblem problem{arm.group(), {}, figure_3_4().shapes(), {}, {}, {"l5", "l6"}, figure_3_4_frame(), "pipe"};
-  for (int i = 0; i < poses; ++i) {
-    const double turn = -0.3 + 0.12 * i;
-    problem.T_world_object.push_back(
-        pose_from_xyz_rpy({0.5 * std::cos(turn), 0.5 * std::sin(turn), 0.45 + 0.01 * i}, {0, 0.05 * i, turn}));
-  }
-  problem.world.add("post", Cylinder{0.05, 0.6}, pose_from_xyz_rpy({0.25, 0.22, 0.3}, {0, 0, 0}));
-  return problem;
-}
-
-PipeGraspOptions tool() {
-  PipeGraspOptions options;
-  options.approach = Vector3d::UnitZ();
-  options.closing = Vector3d::UnitX();
-  return options;
-}
 
 /// Least cost over a grid of grasps.
 double least_of_grid(const ObjectPathProblem& problem, double step, double turn) {
@@ -45,7 +26,8 @@ double least_of_grid(const ObjectPathProblem& problem, double step, double turn)
     for (double at = 0.02; at <= pipe.length(section) - 0.02 + 1e-9; at += step) {
       for (double angle = -M_PI; angle < M_PI; angle += turn) {
         for (const bool flip : {false, true}) {
-          const ObjectPathResult found = evaluator.evaluate(place_pipe_grasp(pipe, section, at, angle, flip, tool()));
+          const ObjectPathResult found =
+              evaluator.evaluate(place_pipe_grasp(pipe, section, at, angle, flip, puma_tool()));
           if (found.outcome == Outcome::solved) least = std::min(least, found.cost);
         }
       }
@@ -55,13 +37,13 @@ double least_of_grid(const ObjectPathProblem& problem, double step, double turn)
 }
 
 TEST(OptimizeGrasp, EveryAlgorithmComesNearTheGridsBest) {
-  const ObjectPathProblem problem = arc(6);
+  const ObjectPathProblem problem = arc_past_post(6);
   const double grid = least_of_grid(problem, 0.01, M_PI / 36);
   ASSERT_TRUE(std::isfinite(grid));
   for (const std::string& name : population_search_names()) {
     GraspSearchOptions options;
     options.algorithm = name;
-    options.grasp = tool();
+    options.grasp = puma_tool();
     const GraspOptimum best = optimize_grasp(problem, figure_3_4(), {}, options);
     ASSERT_EQ(best.outcome, Outcome::approximate) << name;
     EXPECT_LE(best.path.cost, 1.05 * grid) << name;
@@ -73,10 +55,93 @@ TEST(OptimizeGrasp, EveryAlgorithmComesNearTheGridsBest) {
   }
 }
 
+/// What every name of grasp_search_names() promises.
+class GraspSearch : public ::testing::TestWithParam<std::string> {
+ protected:
+  GraspSearch() {
+    options_.algorithm = GetParam();
+    options_.grasp = puma_tool();
+    options_.population.max_evaluations = 200;
+    options_.max_boxes = 400;
+  }
+  bool proves() const { return GetParam() == "branch_and_bound"; }
+  GraspOptimum run(const Monitor& monitor = {}) const {
+    return optimize_grasp(problem_, figure_3_4(), {}, options_, monitor);
+  }
+  ObjectPathProblem problem_ = arc_past_post(6);
+  GraspSearchOptions options_;
+};
+
+TEST_P(GraspSearch, CountsWhatItTries) {
+  const GraspOptimum found = run();
+  ASSERT_FALSE(found.feasible.empty());
+  EXPECT_EQ(found.history.size(), 200u);
+  EXPECT_EQ(found.evaluations > 200, proves());  // middles of boxes count
+  EXPECT_LE(static_cast<int>(found.feasible.size()), found.evaluations);
+  for (const FeasibleGrasp& each : found.feasible) {
+    const ObjectPathResult again = ObjectPathEvaluator(problem_).evaluate(each.grasp);
+    EXPECT_EQ(again.outcome, Outcome::solved);
+    EXPECT_NEAR(again.cost, each.grasp.cost, 1e-9);
+  }
+  EXPECT_TRUE(std::is_sorted(found.feasible.begin(), found.feasible.end(),
+                             [](const auto& a, const auto& b) { return a.grasp.cost < b.grasp.cost; }));
+}
+
+TEST_P(GraspSearch, SaysTheSameAtAnyNumberOfThreads) {
+  options_.threads = 1;
+  const GraspOptimum one = run();
+  options_.threads = 3;
+  const GraspOptimum three = run();
+  EXPECT_EQ(one.evaluations, three.evaluations);
+  EXPECT_EQ(one.unreachable, three.unreachable);
+  EXPECT_EQ(one.colliding, three.colliding);
+  EXPECT_EQ(one.lower_bound, three.lower_bound);
+  ASSERT_EQ(one.feasible.size(), three.feasible.size());
+  for (std::size_t i = 0; i < one.feasible.size(); ++i)
+    EXPECT_EQ(one.feasible[i].grasp.cost, three.feasible[i].grasp.cost);
+}
+
+TEST_P(GraspSearch, EndsWhenAskedTo) {
+  Monitor monitor;
+  monitor.progress = [&](const std::string& stage, double) {
+    if (!proves() || stage == "branch and bound") monitor.stop.stop();
+  };
+  options_.max_boxes = 1000000;
+  options_.max_gap = 1e-9;  // would take for ever
+  const GraspOptimum found = run(monitor);
+  EXPECT_EQ(found.outcome, Outcome::stopped);
+  if (proves()) {
+    EXPECT_EQ(found.history.size(), 200u);
+    EXPECT_LT(found.boxes, 200);
+    EXPECT_LE(found.lower_bound, found.path.cost);
+  } else {
+    EXPECT_LT(found.evaluations, 200);
+  }
+}
+
+TEST_P(GraspSearch, KeepsItsLimits) {
+  const GraspOptimum all = run();
+  EXPECT_EQ(all.outcome, Outcome::approximate);  // 400 boxes do not prove it
+  EXPECT_EQ(all.boxes > 0, proves());
+  EXPECT_LE(all.boxes, 400 + 2 * 16);  // what a round divides
+  EXPECT_LE(all.lower_bound, all.path.cost);
+  options_.time_limit = 1e-9;
+  options_.max_boxes = 1000000;
+  const GraspOptimum none = run();
+  EXPECT_LE(none.boxes, 12);  // those it begins with
+  EXPECT_EQ(none.outcome, Outcome::approximate);
+  EXPECT_EQ(none.lower_bound, 0);
+  options_.max_boxes = 0;
+  EXPECT_THROW(run(), InvalidInput);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, GraspSearch, ::testing::ValuesIn(grasp_search_names()),
+                         [](const auto& info) { return info.param; });
+
 TEST(OptimizeGrasp, TargetEndsIt) {
   GraspSearchOptions options;
-  options.grasp = tool();
-  const ObjectPathProblem problem = arc(6);
+  options.grasp = puma_tool();
+  const ObjectPathProblem problem = arc_past_post(6);
   const double found = optimize_grasp(problem, figure_3_4(), {}, options).path.cost;
   options.population.target = 1.2 * found;
   options.population.seed = 4;
@@ -88,8 +153,8 @@ TEST(OptimizeGrasp, TargetEndsIt) {
 
 TEST(OptimizeGrasp, FrontHoldsWhatNothingBeats) {
   GraspSearchOptions options;
-  options.grasp = tool();
-  const GraspOptimum best = optimize_grasp(arc(6), figure_3_4(), {}, options);
+  options.grasp = puma_tool();
+  const GraspOptimum best = optimize_grasp(arc_past_post(6), figure_3_4(), {}, options);
   ASSERT_GT(best.front.size(), 1u);
   EXPECT_TRUE(std::is_sorted(best.feasible.begin(), best.feasible.end(),
                              [](const auto& a, const auto& b) { return a.grasp.cost < b.grasp.cost; }));
@@ -106,11 +171,76 @@ TEST(OptimizeGrasp, FrontHoldsWhatNothingBeats) {
   }
 }
 
+using Costs = std::array<double, 3>;
+
+/// How far the worst covered place of a grid's front is from the nearest one found, as a share of what the grid's front
+/// spans: found costs may exceed it by that much in no objective.
+double farthest(const std::vector<Costs>& front, const std::vector<Costs>& found) {
+  Costs least = front[0], most = front[0];
+  for (const Costs& each : front) {
+    for (int k = 0; k < 3; ++k) {
+      least[k] = std::min(least[k], each[k]);
+      most[k] = std::max(most[k], each[k]);
+    }
+  }
+  double worst = 0;
+  for (const Costs& wanted : front) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Costs& each : found) {
+      double over = 0;
+      for (int k = 0; k < 3; ++k) over = std::max(over, (each[k] - wanted[k]) / (most[k] - least[k]));
+      nearest = std::min(nearest, over);
+    }
+    worst = std::max(worst, nearest);
+  }
+  return worst;
+}
+
+TEST(OptimizeGrasp, FrontSearchesCoverTheFrontOfAGrid) {
+  const ObjectPathProblem problem = arc_past_post(5);
+  ObjectPathEvaluator evaluator(problem);
+  std::vector<Costs> all, front;
+  for (int section = 0; section < 6; ++section) {
+    for (double at = 0.02; at <= figure_3_4().length(section) - 0.02 + 1e-9; at += 0.01) {
+      for (int degree = -180; degree < 180; degree += 5) {
+        const auto found =
+            evaluator.evaluate(place_pipe_grasp(figure_3_4(), section, at, degree * M_PI / 180, false, puma_tool()));
+        if (found.outcome == Outcome::solved)
+          all.push_back({found.joint_motion, found.deflection, found.force_manipulability});
+      }
+    }
+  }
+  for (const Costs& a : all) {
+    const bool beaten = std::any_of(
+        all.begin(), all.end(), [&](const Costs& b) { return b != a && b[0] <= a[0] && b[1] <= a[1] && b[2] <= a[2]; });
+    if (!beaten) front.push_back(a);
+  }
+  ASSERT_GT(front.size(), 20u);
+  const auto searched = [&](int front_searches) {
+    GraspSearchOptions options;
+    options.grasp = puma_tool();
+    options.population.max_evaluations = 1000;
+    options.front_searches = front_searches;
+    const GraspOptimum found = optimize_grasp(problem, figure_3_4(), {}, options);
+    EXPECT_EQ(found.evaluations, 1000 * (1 + front_searches));
+    EXPECT_EQ(found.history.size(), 1000u);
+    std::vector<Costs> costs;
+    for (const int i : found.front) {
+      const FeasibleGrasp& each = found.feasible[i];
+      costs.push_back({each.joint_motion, each.deflection, each.force_manipulability});
+    }
+    return farthest(front, costs);
+  };
+  const double passed = searched(0), looked_for = searched(12);
+  EXPECT_LT(looked_for, 0.05);
+  EXPECT_LT(looked_for, 0.5 * passed);
+}
+
 TEST(OptimizeGrasp, OutOfReachSaysWhere) {
-  ObjectPathProblem problem = arc(6);
+  ObjectPathProblem problem = arc_past_post(6);
   problem.T_world_object[4].translation() = Vector3d(4, 0, 0);
   GraspSearchOptions options;
-  options.grasp = tool();
+  options.grasp = puma_tool();
   options.population.max_evaluations = 200;
   const GraspOptimum none = optimize_grasp(problem, figure_3_4(), {}, options);
   EXPECT_EQ(none.outcome, Outcome::not_found);
@@ -121,7 +251,7 @@ TEST(OptimizeGrasp, OutOfReachSaysWhere) {
 }
 
 TEST(GraspVariables, NeighboursGoWhereTheirStrategySays) {
-  const detail::GraspVariables grasps(figure_3_4(), tool());
+  const detail::GraspVariables grasps(figure_3_4(), puma_tool());
   Rng rng(3);
   // Section 3 begins at the node where sections 2 (its end) and 4 (its begin) meet it.
   VectorXd x(4);

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "beam_frames.hpp"
+#include "carried_pipe.hpp"
 #include "enumerated_path.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/random.hpp"
@@ -23,20 +23,12 @@ ObjectPathProblem along(const JointGroup& group, const Poses& poses, const std::
   return {group, {}, figure_3_4().shapes(), poses, {}, touch, figure_3_4_frame(), "pipe"};
 }
 
-std::vector<Grasp> some_grasps(int count) {
-  PipeGraspOptions options;
-  options.approach = Vector3d::UnitZ();
-  options.closing = Vector3d::UnitX();
-  options.seed = 7;
-  return sample_pipe_grasps(figure_3_4(), count, options).grasps;
-}
-
 /// Answers of the library and of the enumeration; how many of the grasps were feasible.
 int expect_equal(const ObjectPathProblem& problem, const ObjectPathOptions& options,
                  const Configurations& configurations, int grasps, int& refused) {
   ObjectPathEvaluator evaluator(problem, options);
   int solved = 0;
-  for (const Grasp& grasp : some_grasps(grasps)) {
+  for (const Grasp& grasp : some_grasps(grasps, 7)) {
     const ObjectPathResult found = evaluator.evaluate(grasp);
     const Enumerated truth(problem, grasp, options, configurations);
     EXPECT_EQ(found.violations, truth.violations);
@@ -124,7 +116,7 @@ TEST(SampledPaths, LongStraightCarryNeedsTheBase) {
   options.deflection_weight = options.manipulability_weight = 0;
   options.motion_weight = 1;
   options.base_headings = 1;
-  const Grasp grasp = some_grasps(1).front();
+  const Grasp grasp = some_grasps(1, 7).front();
   const ObjectPathResult found = follow_object_path(problem, grasp, options);
   ASSERT_EQ(found.outcome, Outcome::solved);
   EXPECT_LE(found.joint_motion, 3 + 1e-6);
@@ -150,7 +142,8 @@ TEST(SampledPaths, TooFineAGridIsRefused) {
   const Poses poses{pose_from_xyz_rpy({0, 0, 0.6}, {0, 0, 0}), pose_from_xyz_rpy({0.1, 0, 0.6}, {0, 0, 0})};
   ObjectPathOptions options;
   options.base_spacing = 0.001;
-  EXPECT_THROW(follow_object_path(along(robot.group(), poses, {"l6"}), some_grasps(1).front(), options), InvalidInput);
+  EXPECT_THROW(follow_object_path(along(robot.group(), poses, {"l6"}), some_grasps(1, 7).front(), options),
+               InvalidInput);
 }
 
 /// Random graphs, all paths walked; checks that refuse some vertices and edges.

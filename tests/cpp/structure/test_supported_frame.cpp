@@ -8,6 +8,7 @@
 #include "beam_frames.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/random.hpp"
+#include "mmgrasp/structure/pipe_grasps.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -244,6 +245,39 @@ TEST(SupportedFrame, StressOverItsLimit) {
   const BeamState state = SupportedFrame(frame, {at(0, 0)}).state({0, 0, -kG});
   ASSERT_TRUE(state.over_limit);
   EXPECT_NEAR(state.over_limit->value, state.stress->value / 1e6, 1e-12);
+}
+
+TEST(SupportedFrame, ALimitHoldsBesideSectionsWithoutExtents) {
+  BeamFrame frame = tube(0.4);
+  frame.members[0].material.stress_limit = 1e6;
+  const BeamState alone = SupportedFrame(frame, {at(0, 0)}).state({0, 0, -kG});
+  frame.nodes.emplace_back(frame.nodes[1] + Vector3d(0.1, 0, 0));
+  BeamMember more = frame.members[0];
+  more.nodes = {1, 2};
+  more.material.stress_limit = 0;
+  more.section.y_extent = 0;  // not known
+  frame.members.push_back(more);
+  const BeamState state = SupportedFrame(frame, {at(0, 0)}).state({0, 0, -kG});
+  ASSERT_TRUE(state.stress && state.over_limit);
+  EXPECT_EQ(state.over_limit->member, 0);
+  EXPECT_NEAR(state.stress->value, alone.stress->value * 25 / 16, 1e-6 * alone.stress->value);  // (0.5 / 0.4)^2
+  frame.members[1].material.stress_limit = 1e6;
+  try {
+    frame.check();
+    FAIL() << "a limit was taken that nothing checks";
+  } catch (const InvalidInput& error) {
+    EXPECT_NE(std::string(error.what()).find("members[1].material.stress_limit"), std::string::npos) << error.what();
+  }
+}
+
+TEST(SupportedFrame, ItsDeflectionIsThatOfTheHeldFrame) {
+  const BeamFrame frame = figure_3_4_frame();
+  const Grasp grasp = place_pipe_grasp(figure_3_4(), 2, 0.05, 0.3, false, {});
+  const Pose T = pose_from_xyz_rpy({1, 2, 3}, {0.4, -0.7, 1.1});
+  const BeamState held = SupportedFrame(frame, {at(2, 0.05)}).state(T.linear().transpose() * Vector3d(0, 0, -kG));
+  EXPECT_NEAR(frame.deflection(grasp, T).displacement.value, held.displacement.value, 1e-15);
+  EXPECT_NEAR(frame.deflection(std::vector<BeamSupport>{at(2, 0.05)}, T, 2 * kG).displacement.value,
+              2 * held.displacement.value, 1e-15);
 }
 
 TEST(SupportedFrame, RefusesWhatCannotHold) {

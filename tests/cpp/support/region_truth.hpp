@@ -43,7 +43,7 @@ class RegionTruth {
   }
 
   static World whole_world(const PartSupplyProblem& problem) {
-    World world = problem.scene;
+    World world = problem.world;
     for (const Tray& tray : problem.trays) {
       for (const Part& part : tray.parts) world.add(part.name, WorldObject{part.shapes, part.T_world_part});
     }

@@ -116,7 +116,7 @@ inline PartSupplyProblem small_storeroom(int parts_per_tray = 2) {
                             Eigen::Vector3d::Zero(),
                             PlaceRegion(),
                             PartSupplyOptions()};
-  problem.scene.add("table", box_shape(0.30, 1.2, 0.04), at(0.9, 0.0, 0.42));
+  problem.world.add("table", box_shape(0.30, 1.2, 0.04), at(0.9, 0.0, 0.42));
   problem.trays = {small_tray("A", 0.88, -0.15, parts_per_tray), small_tray("B", 0.88, 0.15, parts_per_tray)};
   problem.start = Eigen::Vector3d(-0.8, 0.5, 0);
   problem.goal = Eigen::Vector3d(-0.8, -0.5, 3.0);

@@ -128,7 +128,7 @@ inline PartSupplyProblem tray_row(const MobileManipulator& robot, const RowOptio
       robot.arm.robot(),         robot.arm,     robot.gripper,      World(), {}, robot.home, Eigen::Vector3d(-3, 0, 0),
       Eigen::Vector3d(-3, 0, 0), PlaceRegion(), PartSupplyOptions()};
   const double length = (row.trays - 1) * row.spacing;
-  problem.scene.add("table", Box{Eigen::Vector3d(0.40, length + 0.60, 0.03)}, at(1.0, 0.5 * length, row.floor - 0.021));
+  problem.world.add("table", Box{Eigen::Vector3d(0.40, length + 0.60, 0.03)}, at(1.0, 0.5 * length, row.floor - 0.021));
   Eigen::Matrix3d tool, world;
   tool << robot.gripper.approach, robot.gripper.closing, robot.gripper.approach.cross(robot.gripper.closing);
   const auto spread = [](int i, int count, double size) {
@@ -152,7 +152,7 @@ inline PartSupplyProblem tray_row(const MobileManipulator& robot, const RowOptio
       add(0, 0.5 * side * kWidth, 0.5 * kWall, kDepth, kThick, kWall);
     }
     walls.T_world_object = tray.T_world_tray;
-    problem.scene.add(tray.name, walls);
+    problem.world.add(tray.name, walls);
     for (int i = 0; i < row.rows; ++i) {
       for (int j = 0; j < row.columns; ++j) {
         Part part;

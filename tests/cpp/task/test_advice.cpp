@@ -40,7 +40,7 @@ PartSupplyProblem coarse_storeroom() {
   PartSupplyProblem problem = test::small_storeroom(1);
   problem.options.grid.resolution = 0.08;
   problem.options.robustness_samples = 40;
-  problem.scene.add("floor", test::box_shape(8, 8, 0.10), test::at(0, 0, -0.05));
+  problem.world.add("floor", test::box_shape(8, 8, 0.10), test::at(0, 0, -0.05));
   return problem;
 }
 
@@ -64,25 +64,25 @@ PartSupplyProblem seeded_failure(int number) {
                         // come near
       if (number % 2) problem.trays.pop_back();
       const double depth = rng.uniform(1.8, 2.1);
-      problem.scene.add("step", test::box_shape(depth, 4.0, 0.10),
+      problem.world.add("step", test::box_shape(depth, 4.0, 0.10),
                         test::at(-0.25 + 0.5 * depth, rng.uniform(-0.2, 0.2), 0.05));
       break;
     }
     case Kind::crates: {  // the tray stands off to the side where low crates cover the floor
       problem.trays.pop_back();
       const double x = rng.uniform(-0.05, 0.05), y = rng.uniform(0.9, 1.3);
-      problem.scene.move("table", test::at(0.9 + x, y, 0.42));
+      problem.world.move("table", test::at(0.9 + x, y, 0.42));
       for (Pose* T : {&problem.trays[0].T_world_tray, &problem.trays[0].parts[0].T_world_part})
         T->translation() += Eigen::Vector3d(x, y, 0);
       for (int i = 0; i < 32; ++i) {  // with gaps too narrow for the base
-        problem.scene.add("crate_" + std::to_string(i), test::box_shape(rng.uniform(0.30, 0.50), 0.28, 0.12),
+        problem.world.add("crate_" + std::to_string(i), test::box_shape(rng.uniform(0.30, 0.50), 0.28, 0.12),
                           test::at(0.15 + 0.5 * (i % 4), y - 1.2 + 0.3 * (i / 4), 0.06));
       }
       break;
     }
     case Kind::shelf: {  // a board over the tray keeps hand and arm out
       problem.trays.pop_back();
-      problem.scene.add("shelf", test::box_shape(0.34, rng.uniform(0.6, 0.9), 0.03),
+      problem.world.add("shelf", test::box_shape(0.34, rng.uniform(0.6, 0.9), 0.03),
                         test::at(0.86, -0.15, rng.uniform(0.58, 0.62)));
       break;
     }
@@ -108,9 +108,9 @@ PartSupplyProblem with_advice_applied(PartSupplyProblem problem, const std::vect
     if (reported.move_trays.empty() || moved.count(reported.tray)) continue;
     const Eigen::Vector3d by(reported.advised_move.x(), reported.advised_move.y(), 0);
     for (const std::string& name : reported.move_objects) {
-      Pose T = problem.scene.objects().at(name).T_world_object;
+      Pose T = problem.world.objects().at(name).T_world_object;
       T.translation() += by;
-      problem.scene.move(name, T);
+      problem.world.move(name, T);
     }
     for (Tray& tray : problem.trays) {
       if (std::count(reported.move_trays.begin(), reported.move_trays.end(), tray.name) == 0) continue;

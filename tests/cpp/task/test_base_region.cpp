@@ -90,7 +90,7 @@ TEST_F(BaseRegions, CountersEqualABruteForceRecount) {
 /// agree.
 TEST_F(BaseRegions, CellsAreFeasibleForAnotherIk) {
   Rng rng(5);
-  World world = problem_->scene;
+  World world = problem_->world;
   for (const Tray& tray : problem_->trays) {
     for (const Part& part : tray.parts) world.add(part.name, part.shapes[0].shape, part.T_world_part);
   }
@@ -162,7 +162,7 @@ TEST_F(BaseRegions, TheSameAtAnyThreadCount) {
 
 TEST_F(BaseRegions, AnObstacleNeverMakesARegionLarger) {
   PartSupplyProblem other = *problem_;
-  other.scene.add("post", test::box_shape(0.1, 0.1, 1.0), test::at(0.55, -0.45, 0.5));
+  other.world.add("post", test::box_shape(0.1, 0.1, 1.0), test::at(0.55, -0.45, 0.5));
   const std::vector<BaseRegion> regions = compute_base_regions(other, *database_, *grid_);
   for (std::size_t tray = 0; tray < 2; ++tray) {
     for (std::size_t i = 0; i < grid_->size(); ++i) EXPECT_LE(regions[tray].cells[i], (*regions_)[tray].cells[i]);

@@ -162,9 +162,9 @@ TEST(RobustIntersections, ChainOfFiveTrays) {
   const std::vector<std::vector<int>> expected = {{0}, {1}, {2}, {3}, {4}, {0, 1}, {1, 2}, {2, 3}};
   EXPECT_EQ(sets, expected);
   EXPECT_EQ(found.sets_too_small, 1u);
-  ASSERT_EQ(found.lost.size(), 1u);
-  EXPECT_EQ(numbers(found.lost[0].trays), (std::vector<int>{0, 2}));
-  EXPECT_NEAR(found.lost[0].radius, 0.075, 0.05);
+  ASSERT_EQ(found.too_small.size(), 1u);
+  EXPECT_EQ(numbers(found.too_small[0].trays), (std::vector<int>{0, 2}));
+  EXPECT_NEAR(found.too_small[0].radius, 0.075, 0.05);
   EXPECT_TRUE(found.complete);
 
   const StopSet stops = cover_from_intersections(grid, found.robust, 5);

@@ -127,7 +127,7 @@ TEST(DriveBy, LeavesFreeAxesFree) {
   const JointGroup group = test::fetchlike_whole_body();
   DriveByTask task = grasp_at(pose_from_xyz_rpy({5, -1, 0.7}, {2.8, 0.2, -1}));
   const DriveByResult fixed = plan_drive_by(group, World(), kStart, {task}, {kGoal, kGoal});
-  task.free[3] = true;  // roll about the approach axis
+  task.free_axes[3] = true;  // roll about the approach axis
   const DriveByResult r = plan_drive_by(group, World(), kStart, {task}, {kGoal, kGoal});
   ASSERT_EQ(fixed.outcome, Outcome::solved) << fixed.report;
   ASSERT_EQ(r.outcome, Outcome::solved) << r.report;

@@ -42,7 +42,7 @@ verify::PlanToCheck to_check(const PartSupplyProblem& problem, const PartSupplyP
   check.T_base_bin = problem.place_region.T_base_bin;
   check.bin_size = problem.place_region.size;
   check.drop_height = problem.place_region.drop_height;
-  for (const auto& [name, object] : problem.scene.objects())
+  for (const auto& [name, object] : problem.world.objects())
     check.obstacles.push_back({name, object.shapes, object.T_world_object});
   for (const Tray& tray : problem.trays) {
     check.trays.push_back(tray.name);
@@ -66,7 +66,7 @@ verify::PlanToCheck to_check(const PartSupplyProblem& problem, const PartSupplyP
     const Tray& tray = problem.trays[pick.part.tray];
     verify::CheckedPick checked{pick.stop, tray.name, tray.parts[pick.part.part].name, pick.grasp, {}};
     for (const PickMotion& motion : pick.motions) {
-      checked.motions.push_back({to_string(motion.kind), motion.opening, motion.holding, motion.trajectory.times,
+      checked.motions.push_back({to_string(motion.kind), motion.opening, motion.attached, motion.trajectory.times,
                                  motion.trajectory.positions, motion.trajectory.velocities});
     }
     check.picks.push_back(checked);
@@ -222,7 +222,7 @@ TEST(PartSupply, MissingReachSaysHowFarToMove) {
   PartSupplyProblem problem = test::small_storeroom(1);
   problem.options.robustness_samples = 40;
   problem.trays.pop_back();
-  problem.scene.add("step", test::box_shape(2.0, 4.0, 0.10), test::at(0.75, 0, 0.05));
+  problem.world.add("step", test::box_shape(2.0, 4.0, 0.10), test::at(0.75, 0, 0.05));
   const PartSupplyPlan failed = plan_part_supply(problem, database());
   ASSERT_EQ(failed.outcome, Outcome::not_found);
   ASSERT_EQ(failed.obstructions.size(), 1u);
@@ -233,7 +233,7 @@ TEST(PartSupply, MissingReachSaysHowFarToMove) {
   Tray& tray = problem.trays[0];
   tray.T_world_tray.translation().x() -= nearer;
   tray.parts[0].T_world_part.translation().x() -= nearer;
-  problem.scene.move("table", test::at(0.9 - nearer, 0, 0.42));
+  problem.world.move("table", test::at(0.9 - nearer, 0, 0.42));
   const PartSupplyPlan fixed = plan_part_supply(problem, database());
   EXPECT_EQ(fixed.outcome, Outcome::solved) << all_messages(fixed);
 }
@@ -257,10 +257,10 @@ TEST(PartSupply, OnlyWhatNoBasePoseAndNoArmReachesIsProven) {
   part.T_world_part.translation().z() = highest + 0.5;
   EXPECT_EQ(plan_part_supply(problem, database()).outcome, Outcome::infeasible);
   part.T_world_part.translation() = on_table;
-  problem.scene.add("lid", test::box_shape(0.2, 0.2, 0.01),
+  problem.world.add("lid", test::box_shape(0.2, 0.2, 0.01),
                     Pose(Eigen::Translation3d(on_table.x(), on_table.y(), 0.51)));
   EXPECT_EQ(plan_part_supply(problem, database()).outcome, Outcome::infeasible);
-  problem.scene.remove("lid");
+  problem.world.remove("lid");
   Part lid = problem.trays[1].parts[0];
   lid.name = "B/lid";
   lid.target = false;
@@ -273,7 +273,7 @@ TEST(PartSupply, OnlyWhatNoBasePoseAndNoArmReachesIsProven) {
 /// Under the roof every part can be grasped in front of the table, but not lifted; on its other side it can.
 TEST(PartSupply, WhereNoMotionIsFoundOtherStopsAreTried) {
   PartSupplyProblem problem = test::small_storeroom();
-  problem.scene.add("roof", test::box_shape(0.5, 2.5, 0.01), test::at(0.55, 0, 0.85));
+  problem.world.add("roof", test::box_shape(0.5, 2.5, 0.01), test::at(0.55, 0, 0.85));
   const PartSupplyPlan plan = plan_part_supply(problem, database());
   ASSERT_EQ(plan.outcome, Outcome::solved) << all_messages(plan);
   ASSERT_EQ(plan.stops.size(), 1u);

@@ -20,7 +20,7 @@ PickProblem pin_on_table() {
   const PartSupplyProblem room = test::small_storeroom();
   PickProblem problem{room.arm.at(pose_from_planar(Eigen::Vector3d(0.35, -0.1, 0))),
                       room.gripper,
-                      room.scene,
+                      room.world,
                       "pin",
                       test::grasps_from_above(0.03),
                       room.home,
@@ -55,7 +55,7 @@ TEST(Pick, AnObjectInNoTrayIsGraspedLiftedAndPutDown) {
   EXPECT_LT(distance(problem.arm.fk(transfer.back()) * T_hand_pin, problem.places[0]), 2e-3);
   const Eigen::VectorXd turned = pick.motions[4].trajectory.positions.back() - problem.home;
   EXPECT_LT(turned.head<5>().norm(), 1e-6);  // the last joint turns without limits
-  for (std::size_t i = 0; i < pick.motions.size(); ++i) EXPECT_EQ(pick.motions[i].holding, i == 2 || i == 3);
+  for (std::size_t i = 0; i < pick.motions.size(); ++i) EXPECT_EQ(pick.motions[i].attached, i == 2 || i == 3);
 }
 
 TEST(Pick, WithoutAPlaceTheObjectStaysInTheHand) {
@@ -65,7 +65,7 @@ TEST(Pick, WithoutAPlaceTheObjectStaysInTheHand) {
   const Pick pick = plan_object_pick(problem, database());
   ASSERT_EQ(pick.outcome, Outcome::solved);
   ASSERT_EQ(pick.motions.size(), 3u);
-  EXPECT_TRUE(pick.motions.back().holding);
+  EXPECT_TRUE(pick.motions.back().attached);
   EXPECT_EQ(pick.motions[2].kind, MotionKind::lift);
   EXPECT_LE(pick.grasp, whole.grasp);  // less is asked of a grasp
 }
@@ -116,7 +116,7 @@ TEST(Pick, APartOfATrayIsAnObjectLikeAnother) {
   EXPECT_EQ(from_tray.part, wanted);
   const Part& part = room.trays[0].parts[0];
   PickProblem alone{
-      room.arm.at(pose_from_planar(base)), room.gripper, room.scene, part.name, part.grasps, room.home, {}, {}};
+      room.arm.at(pose_from_planar(base)), room.gripper, room.world, part.name, part.grasps, room.home, {}, {}};
   for (const Tray& tray : room.trays)
     alone.world.add(tray.parts[0].name, WorldObject{tray.parts[0].shapes, tray.parts[0].T_world_part});
   alone.options = {room.options.approach_distance, room.options.lift_height, room.options.motion_time_limit,

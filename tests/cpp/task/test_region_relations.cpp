@@ -15,7 +15,7 @@ class RegionRelations : public test::SmallRegions {
   static PartSupplyProblem moved(const PartSupplyProblem& problem, const Eigen::Vector3d& motion) {
     PartSupplyProblem other = problem;
     const Pose T = pose_from_planar(motion);
-    for (const auto& [name, object] : problem.scene.objects()) other.scene.move(name, T * object.T_world_object);
+    for (const auto& [name, object] : problem.world.objects()) other.world.move(name, T * object.T_world_object);
     for (Tray& tray : other.trays) {
       tray.T_world_tray = T * tray.T_world_tray;
       for (Part& part : tray.parts) part.T_world_part = T * part.T_world_part;
@@ -46,7 +46,7 @@ TEST_F(RegionRelations, AnObstacleNeverGrowsARegion) {
   for (int round = 0; round < 6; ++round) {
     PartSupplyProblem other = *problem_;
     for (int i = 0; i < 2; ++i) {
-      other.scene.add("post " + std::to_string(i), test::box_shape(0.06, 0.06, rng.uniform(0.3, 1.2)),
+      other.world.add("post " + std::to_string(i), test::box_shape(0.06, 0.06, rng.uniform(0.3, 1.2)),
                       test::at(rng.uniform(0.2, 1.1), rng.uniform(-0.6, 0.6), rng.uniform(0.2, 0.9)));
     }
     const std::vector<BaseRegion> regions = compute_base_regions(other, *database_, *grid_);

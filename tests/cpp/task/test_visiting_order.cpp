@@ -14,9 +14,9 @@ namespace {
 /// A wall from y = -2 to y = 2 at x = 0, so that places on both sides are near as the crow flies only.
 PartSupplyProblem walled() {
   PartSupplyProblem problem = test::small_storeroom();
-  problem.scene = World();
+  problem.world = World();
   problem.trays.clear();
-  problem.scene.add("wall", test::box_shape(0.2, 4, 1), test::at(0, 0, 0.5));
+  problem.world.add("wall", test::box_shape(0.2, 4, 1), test::at(0, 0, 0.5));
   problem.start = {-2, 0, 0};
   problem.goal = {2, 0, 0};
   return problem;
@@ -24,7 +24,7 @@ PartSupplyProblem walled() {
 
 TEST(RouteLengths, LengthsLeadAroundTheWall) {
   const PartSupplyProblem problem = walled();
-  const CollisionChecker checker(problem.arm, problem.scene);
+  const CollisionChecker checker(problem.arm, problem.world);
   const std::vector<Eigen::Vector3d> places = {{-1.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {-1.0, -2.0, 1.0}, {-3.0, 1.0, 0.0}};
   for (const BaseKind base : {BaseKind::diff_drive, BaseKind::omni}) {
     BaseRouteOptions kind;
@@ -52,10 +52,10 @@ TEST(RouteLengths, LengthsLeadAroundTheWall) {
 TEST(RouteLengths, AClosedRoomCannotBeLeft) {
   PartSupplyProblem problem = walled();
   for (const double sign : {-1.0, 1.0}) {
-    problem.scene.add("x" + std::to_string(sign), test::box_shape(0.1, 3, 1), test::at(3 + 1.5 * sign, 0, 0.5));
-    problem.scene.add("y" + std::to_string(sign), test::box_shape(3, 0.1, 1), test::at(3, 1.5 * sign, 0.5));
+    problem.world.add("x" + std::to_string(sign), test::box_shape(0.1, 3, 1), test::at(3 + 1.5 * sign, 0, 0.5));
+    problem.world.add("y" + std::to_string(sign), test::box_shape(3, 0.1, 1), test::at(3, 1.5 * sign, 0.5));
   }
-  const Eigen::MatrixXd lengths = route_lengths(CollisionChecker(problem.arm, problem.scene), problem.home,
+  const Eigen::MatrixXd lengths = route_lengths(CollisionChecker(problem.arm, problem.world), problem.home,
                                                 {{3, 0, 0}, {-2, 0, 0}, {3.4, 0.2, 0}}, BaseRouteOptions(), 2);
   EXPECT_TRUE(std::isinf(lengths(0, 1)));
   EXPECT_LT(lengths(0, 2), 1);
@@ -75,7 +75,7 @@ TEST(VisitingOrder, SevenStopsAroundAWall) {
   for (const Stop& stop : stops) places.push_back(stop.pose);
   places.push_back(problem.start);
   places.push_back(problem.goal);
-  CollisionChecker checker(problem.arm, problem.scene);
+  CollisionChecker checker(problem.arm, problem.world);
   Eigen::MatrixXd lengths = Eigen::MatrixXd::Zero(9, 9);
   for (std::size_t i = 0; i < 9; ++i) {
     for (std::size_t j = i + 1; j < 9; ++j) {

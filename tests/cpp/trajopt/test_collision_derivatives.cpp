@@ -86,9 +86,9 @@ class CollisionDerivatives : public ::testing::TestWithParam<BaseKind> {};
 
 TEST_P(CollisionDerivatives, AreExactInIntervalsAndAlongArcs) {
   Passing passing(GetParam());
-  for (const bool parts_bodies : {false, true}) {
+  for (const bool keeps_sides : {false, true}) {
     detail::CollisionRows rows(passing.checkers(), {0, kIntervals}, 0.01, 0.5);
-    rows.keep_clear(passing.guess_.positions, parts_bodies);
+    rows.keep_clear(passing.guess_.positions, keeps_sides);
     rows.look_along(passing.trajectory());
     detail::WholeBodyNlp nlp(passing.problem_, 0.5);
     const Eigen::Index others = nlp.constraint_bounds().lower.size();

@@ -294,8 +294,8 @@ TEST(PlanCheck, Openings) {
 
 TEST(PlanCheck, HoldingFlag) {
   PlanToCheck plan = good_plan();
-  motion(plan, 0, kLift).holding = false;
-  EXPECT_EQ(codes_of(plan), Codes{"holding"});
+  motion(plan, 0, kLift).attached = false;
+  EXPECT_EQ(codes_of(plan), Codes{"attachment"});
 }
 
 TEST(PlanCheck, FingerOutsideItsLimits) {

@@ -298,7 +298,7 @@ TEST(PlanCheckFigures, WhatDescribesMustNotLie) {
     return way / limits.linear_velocity + limits.linear_velocity / limits.linear_acceleration;
   };
   const double quarter = M_PI / 2 / limits.angular_velocity + limits.angular_velocity / limits.angular_acceleration;
-  good.route_figures = {{1.4, 0, drive(1.4)}, {3, M_PI, drive(3) + 2 * quarter}, {1.4, 0, drive(1.4)}};
+  good.leg_values = {{1.4, 0, drive(1.4)}, {3, M_PI, drive(3) + 2 * quarter}, {1.4, 0, drive(1.4)}};
   good.intersections = {{{"A"}, 0, Eigen::Vector2d(0.4, 0), 0.2}, {{"B"}, 0, Eigen::Vector2d(0.35, 3), 0.15}};
   good.robustness_rate = 1;
   for (CheckedPick& pick : good.picks) {
@@ -310,14 +310,14 @@ TEST(PlanCheckFigures, WhatDescribesMustNotLie) {
   }
   EXPECT_EQ(codes_of(good), Codes{});
   std::vector<PlanToCheck> lies(7, good);
-  lies[0].route_figures[1].length = 2.99;
-  lies[1].route_figures[1].turning = 0;
-  lies[2].route_figures[0].duration = 1.39 / good.robot.base_limits.linear_velocity;  // no time to speed up and brake
-  lies[3].route_figures.pop_back();
-  lies[4].route_figures[2].duration = -1;
-  lies[5].route_figures[2].length = std::nan("");
-  lies[6].route_figures[0].duration *= 1.1;
-  for (const PlanToCheck& lie : lies) EXPECT_EQ(codes_of(lie), Codes{"route-figures"}) << &lie - lies.data();
+  lies[0].leg_values[1].length = 2.99;
+  lies[1].leg_values[1].turning = 0;
+  lies[2].leg_values[0].duration = 1.39 / good.robot.base_limits.linear_velocity;  // no time to speed up and brake
+  lies[3].leg_values.pop_back();
+  lies[4].leg_values[2].duration = -1;
+  lies[5].leg_values[2].length = std::nan("");
+  lies[6].leg_values[0].duration *= 1.1;
+  for (const PlanToCheck& lie : lies) EXPECT_EQ(codes_of(lie), Codes{"route-values"}) << &lie - lies.data();
   lies.assign(7, good);
   lies[6].intersections[0].radius = 0.19;  // not the largest
   lies[0].intersections[0].radius = 0.21;
@@ -326,7 +326,7 @@ TEST(PlanCheckFigures, WhatDescribesMustNotLie) {
   lies[3].intersections[1].heading = 1;
   lies[4].robustness_rate = 1.1;
   lies[5].robustness_rate = -0.1;
-  for (const PlanToCheck& lie : lies) EXPECT_EQ(codes_of(lie), Codes{"bad-figures"}) << &lie - lies.data();
+  for (const PlanToCheck& lie : lies) EXPECT_EQ(codes_of(lie), Codes{"wrong-values"}) << &lie - lies.data();
   good.stops[1].radius = 0.19;
   EXPECT_EQ(codes_of(good), Codes{"stop-radius"});
   good.stops[1].radius = 0.2;

@@ -34,8 +34,8 @@ struct MMGRASP_EXPORT Padding {
   double links = 0;     ///< Links of the robot.
   double attached = 0;  ///< What is attached to them.
   double objects = 0;   ///< Objects of the scene.
-  /// In place of these for single bodies: by a link, an object (attached or not) or an SRDF group, whose links take it
-  /// unless they are named themselves (of several groups the most).
+  /// Padding of single bodies, used in place of these: the key names a link, an object (attached or not) or an SRDF
+  /// group, whose links take it unless they are named themselves (of several groups the most).
   std::map<std::string, double> by_name = {};
   double most() const;  ///< The largest of all.
   void check() const;
@@ -51,7 +51,8 @@ struct MMGRASP_EXPORT Padding {
 ///
 /// - A World is plain values: a copy is a snapshot, and checkers keep the copy that they were made with.
 /// - Names are unique over objects, attached objects and fields.
-/// - A distance field is an obstacle of its own kind (add_field): maps of cameras, for example.
+/// - A distance field is an obstacle of its own kind (add_field): a mesh's or a grid's. Maps of cameras are added as
+///   solid cells instead (ProbabilisticSdf::obstacle_cells), since their error is not bounded everywhere.
 /// - Padding grows bodies where the robot meets the scene, never the robot against itself.
 class MMGRASP_EXPORT World {
  public:

@@ -32,14 +32,14 @@ MMGRASP_EXPORT const char* to_string(Rejection cause);
 struct MMGRASP_EXPORT Rejections {
   std::size_t unreachable = 0;     ///< No arm configuration reaches the pose.
   std::size_t limits = 0;          ///< Reached only outside joint limits.
-  std::size_t self_collision = 0;  ///< Reached, but robot hits robot (or what it holds).
-  std::size_t scene = 0;           ///< Reached, but robot (or what it holds) hits the scene.
+  std::size_t self_collision = 0;  ///< Reached, but the robot, or what is attached to it, hits the robot.
+  std::size_t scene = 0;           ///< Reached, but the robot, or what is attached to it, hits the scene.
   std::size_t grasp_filter = 0;    ///< Rejected before IK (gripper too small, hand hits its part, ...).
 
   void add(Rejection cause, std::size_t count = 1);
   Rejections& operator+=(const Rejections& other);
   std::size_t total() const;
-  std::string summary() const;  ///< "reach 12, scene 3", or "none".
+  std::string summary() const;  ///< "unreachable 12, scene 3", or "none".
   bool operator==(const Rejections& other) const;
 };
 

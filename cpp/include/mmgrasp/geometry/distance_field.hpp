@@ -42,7 +42,8 @@ class MMGRASP_EXPORT DistanceField {
 
   /// Signed distance of one point; throws InvalidInput when it is not finite.
   double distance(const Eigen::Vector3d& point) const;
-  /// Of the columns of `points` (3, n). Throws InvalidInput on one that is not finite, naming its index.
+  /// Signed distances of the columns of `points` (3, n). Throws InvalidInput on one that is not finite, naming its
+  /// index.
   Eigen::VectorXd distances(const Eigen::Matrix3Xd& points) const;
   /// The same with the gradients (3, n): unit vectors along which the distance grows fastest, away from the nearest
   /// point of the surface when outside and towards it when inside. Zero where unknown. Where several points of the

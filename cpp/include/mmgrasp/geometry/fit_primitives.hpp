@@ -30,8 +30,8 @@ struct MMGRASP_EXPORT FittedPrimitive {
   Pose T_mesh_primitive = Pose::Identity();  ///< Centre; z along the axis of a cylinder or cone, which narrows along z.
   Eigen::Vector3d size = Eigen::Vector3d::Zero();  ///< Box: lengths; cylinder: (d, d, length); cone: (d at its foot, d
                                                    ///< at its top, length); sphere: (d, d, d) [m].
-  double volume = 0;                               ///< Of the primitive [m^3].
-  double hull_volume = 0;                          ///< Of the segment's convex hull [m^3].
+  double volume = 0;                               ///< Volume of the primitive [m^3].
+  double hull_volume = 0;                          ///< Volume of the segment's convex hull [m^3].
   double deviation = 0;  ///< Mean distance of the segment's faces from the primitive's surface they lie on [m].
   std::vector<GraspWidth> widths;  ///< Most covered first; none where the primitive has no surface to hold.
 };

@@ -25,7 +25,7 @@ class MMGRASP_EXPORT GridDistanceField : public DistanceField {
     std::vector<double> values;                                   ///< [m]; z changes fastest. NaN: not known.
     Eigen::Vector3d origin = Eigen::Vector3d::Zero();             ///< First point [m].
     double spacing = 0.01;                                        ///< [m]; > 0.
-    double error = 0;                                             ///< Of the values [m]; >= 0.
+    double error = 0;                                             ///< Largest error of the values [m]; >= 0.
     double truncation = std::numeric_limits<double>::infinity();  ///< See DistanceFieldProperties [m]; > 0.
     void check() const;                                           ///< Throws InvalidInput.
   };

@@ -18,7 +18,7 @@ struct OctreeFile {
   std::string content;    ///< Every byte.
   double resolution = 0;  ///< Edge of the smallest cell [m].
   bool binary = false;    ///< .bt; else .ot.
-  long nodes = 0;         ///< Of the tree, inner ones too.
+  long nodes = 0;         ///< Number of the tree's nodes, inner ones too.
   std::size_t data = 0;   ///< Where in the content the tree begins.
 };
 

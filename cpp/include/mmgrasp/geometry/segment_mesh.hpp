@@ -35,7 +35,7 @@ struct MMGRASP_EXPORT ScrewThread {
 };
 
 struct MMGRASP_EXPORT MeshSegment {
-  std::vector<int> faces;  ///< Of the mesh, ascending.
+  std::vector<int> faces;  ///< Indices of the mesh's faces, ascending.
   double area = 0;         ///< [m^2]
   double diameter = 0;     ///< Median of its faces' shape diameters by area [m].
   bool threaded = false;   ///< More than a tenth of its area belongs to a screw thread: not to be grasped there.

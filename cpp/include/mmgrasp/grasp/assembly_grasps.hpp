@@ -13,7 +13,7 @@ struct MMGRASP_EXPORT AssemblyGraspOptions {
   double parallel_angle = 0.05;  ///< Facets held between jaws are off parallel by no more [rad]; in (0, 0.5].
   int directions = 12;  ///< Approaches in a turn about the closing axis, or turns of centric fingers; in [1, 360].
   double min_contact = 0.003;  ///< Length along the approach by which a pad must overlap the segment [m], > 0.
-  double pad_length = 0.02;    ///< Of a pad along the approach [m], >= min_contact.
+  double pad_length = 0.02;    ///< Length of a pad along the approach [m], >= min_contact.
   double max_opening = 0.25;   ///< Wider segments are left out [m], > 0.
   double finger_width = 0.015, finger_thickness = 0.008, clearance = 0.002;  ///< See AssemblyGrasp [m].
   double palm_margin = 0.005;  ///< The palm reaches beyond the open fingers by this [m], >= 0.
@@ -22,9 +22,9 @@ struct MMGRASP_EXPORT AssemblyGraspOptions {
 
 /// A nearly plane piece of a surface (P1 5.3.3, planar clustering).
 struct MMGRASP_EXPORT Facet {
-  std::vector<int> faces;                             ///< Of the mesh, ascending.
+  std::vector<int> faces;                             ///< Indices of the mesh's faces, ascending.
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< Outwards, weighted by area.
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();   ///< Of area [m].
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();   ///< Centre of its area [m].
   double area = 0;                                    ///< [m^2]
 };
 

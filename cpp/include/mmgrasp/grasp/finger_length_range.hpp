@@ -35,10 +35,10 @@ struct MMGRASP_EXPORT AssemblyGrasp {
   Pose T_active_tool = Pose::Identity();
   int fingers = 2;            ///< 2: parallel jaws, 3: centric fingers.
   double opening = 0.02;      ///< Between the pads while it holds, or the diameter that three of them touch [m]; > 0.
-  double width = 0.015;       ///< Of a finger, across approach and closing direction [m]; > 0.
-  double thickness = 0.008;   ///< Of a finger, along the closing direction [m]; > 0.
-  double clearance = 0.002;   ///< By how much each finger opens to approach and to let go [m]; >= 0.
-  double palm_radius = 0.03;  ///< Of the palm and of all behind it, about the tool's z [m]; > 0.
+  double width = 0.015;       ///< Width of a finger, across approach and closing direction [m]; > 0.
+  double thickness = 0.008;   ///< Thickness of a finger, along the closing direction [m]; > 0.
+  double clearance = 0.002;   ///< How far each finger opens to approach and to let go [m]; >= 0.
+  double palm_radius = 0.03;  ///< Radius of the palm and of all behind it, about the tool's z [m]; > 0.
   void check() const;         ///< Throws InvalidInput naming field, value and rule.
 };
 

@@ -10,8 +10,8 @@
 
 namespace mmgrasp {
 
-/// One factor of a grasp's quality, 1 - weight + weight * value: a part of weight 0.5 halves the quality at worst.
-struct MMGRASP_EXPORT QualityPart {
+/// One factor of a grasp's quality, 1 - weight + weight * value: one of weight 0.5 halves the quality at worst.
+struct MMGRASP_EXPORT QualityFactor {
   std::string name;
   double value = 1;   ///< From 0 to 1, the best.
   double weight = 1;  ///< From 0 (counts nothing) to 1.
@@ -61,14 +61,14 @@ struct MMGRASP_EXPORT Grasp {
   double opening = 0;  ///< Distance between the fingers while holding [m]: the object's width between them; >= 0.
   double cost = 0;     ///< Added by planners to their path's length; >= 0.
   double quality = 1;  ///< Larger is better, in [0, 1].
-  std::vector<QualityPart> parts{};  ///< What `quality` is the product of; empty when it was given as a number.
+  std::vector<QualityFactor> quality_factors{};  ///< `quality` is their product; empty when it was given as a number.
   /// Posture of a hand with several joint groups: for each of Hand::groups() how far it is open, in [0, 1]. Empty: the
   /// posture that belongs to `opening`.
   std::vector<double> posture{};
   GraspProvenance provenance{};
 
-  /// Sets `parts`, and `quality` to the product of their factors.
-  void set_quality(std::vector<QualityPart> by_name);
+  /// Sets `quality_factors`, and `quality` to their product.
+  void set_quality(std::vector<QualityFactor> factors);
 };
 
 /// What a sampler found, and what it left out because the hand does not open so far.

@@ -48,10 +48,10 @@ struct MMGRASP_EXPORT Graspability {
 /// and palm with those that would be touched. Graspability is the contact count where nothing is touched, smoothed; at
 /// its local maxima the hand is centred on the part, its width measured (the grasp's opening), and the hand opened for
 /// that width (Hand::pregrasp_opening) is checked again. Cells of which nothing is known, and all beyond the map, count
-/// as touched. Grasps move straight in along -z of the map's frame. Their quality has five parts: `contact`, the share
-/// of the pads in contact, and `solidity` of the part between them, of weight 1; `depth` of the hold, `centring` on the
-/// part and `room` for the hand to shift, of weight 0.5. Same answer at any thread count. Throws InvalidInput on a bad
-/// map, hand or option.
+/// as touched. Grasps move straight in along -z of the map's frame. Their quality has five factors: `contact`, the
+/// share of the pads in contact, and `solidity` of the part between them, of weight 1; `depth` of the hold, `centring`
+/// on the part and `room` for the hand to shift, of weight 0.5. Same answer at any thread count. Throws InvalidInput on
+/// a bad map, hand or option.
 MMGRASP_EXPORT Graspability evaluate_graspability(const HeightMap& map, const Hand& hand,
                                                   const GraspabilityOptions& options = {}, const Monitor& monitor = {});
 

@@ -22,7 +22,7 @@ struct MMGRASP_EXPORT SurfaceDrawOptions {
 /// The whole probability (4.1), by drawing surfaces.
 struct MMGRASP_EXPORT DrawnSuccess {
   double probability = 0;     ///< Mean of P(S | x, g) over the drawn surfaces.
-  double standard_error = 0;  ///< Of that mean.
+  double standard_error = 0;  ///< Standard error of that mean.
   double holds = 0;           ///< Share of the surfaces on which the pads meet planes in force closure.
 };
 

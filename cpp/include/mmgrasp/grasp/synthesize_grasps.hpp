@@ -25,7 +25,7 @@ struct MMGRASP_EXPORT SynthesisOptions {
   int samples = 200;            ///< Grasps evaluated: two thirds spread over the object, the rest around the best; > 0.
   int refined = 8;              ///< Grasps of the first search around which the second goes on; > 0.
   double shift = 0.012;         ///< Farthest that the second search shifts a grasp in the plane of its pads [m]; >= 0.
-  double max_tilt = 1.05;       ///< Of the approach against straight down, in [0, pi] [rad].
+  double max_tilt = 1.05;       ///< Largest angle of the approach from straight down, in [0, pi] [rad].
   std::optional<double> table;  ///< Height of the level table that the object stands on [m]; none: there is none.
   double table_tolerance = 0.004;  ///< What the map has up to this height above the table is the table [m]; >= 0.
   std::optional<Eigen::AlignedBox3d> object;  ///< What to grasp lies in this box [m]; none: all of the map.
@@ -66,17 +66,17 @@ struct MMGRASP_EXPORT GraspRating {
   std::vector<ContactPatch> patches;     ///< One a finger, in the world.
   double pretouch_opening = 0;           ///< Between the pads before closing, P3's g_n [m].
   std::vector<double> pretouch_posture;  ///< The same of hands with several joint groups; see Grasp::posture.
-  std::optional<DrawnSuccess> drawn;     ///< By draw_success(); none: it was not called.
+  std::optional<DrawnSuccess> drawn;     ///< What draw_success() found; none: it was not called.
   Eigen::VectorXd q;                     ///< The arm's configuration before closing; empty without an arm.
 };
 
 struct MMGRASP_EXPORT GraspSynthesis {
   Outcome outcome = Outcome::not_found;  ///< solved, not_found or stopped.
   std::vector<Grasp> grasps;             ///< Most probable first; T_object_hand is the pose in the world.
-  std::vector<GraspRating> ratings;      ///< In the same order.
+  std::vector<GraspRating> ratings;      ///< One for each grasp, in the same order.
   SynthesisCounts counts;
   Rejections arm;       ///< Why the arm did not reach grasps.
-  ObjectExtent object;  ///< Of the box fitted to the map's points: middle and longest side.
+  ObjectExtent object;  ///< Middle and longest side of the box fitted to the map's points.
   /// One sentence: how many grasps there are or what most of those tried failed on.
   std::string summary() const;
 };

@@ -35,8 +35,8 @@ struct MMGRASP_EXPORT Gripper {
                                  ///< pad where they would meet each other when closed.
   double finger_thickness = 0.008;  ///< Along the closing direction [m], > 0.
   double palm_height = 0.04;        ///< From the mounting face to the palm [m], > 0.
-  double max_force = 50;            ///< Of each finger's joint [N], > 0.
-  double max_speed = 0.1;           ///< Of each finger's joint [m/s], > 0.
+  double max_force = 50;            ///< Largest force of each finger's joint [N], > 0.
+  double max_speed = 0.1;           ///< Largest speed of each finger's joint [m/s], > 0.
 
   void check() const;  ///< Throws InvalidInput naming field, value and rule.
   /// Whether it holds a segment, by (5.2) of P1 with <= in place of <: the printed form would refuse a part as wide as

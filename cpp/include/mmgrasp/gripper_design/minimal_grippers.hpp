@@ -19,7 +19,7 @@ struct MMGRASP_EXPORT GripperActuator {
   int fingers = 2;                                               ///< 2 or 3.
   double stroke = 0;                                             ///< Largest less smallest opening [m], > 0.
   double max_opening = std::numeric_limits<double>::infinity();  ///< As wide as fingers can be mounted [m], >= stroke.
-  double cost = 1;                                               ///< Of a gripper with this drive, > 0.
+  double cost = 1;                                               ///< Cost of a gripper with this drive, > 0.
 };
 
 struct MMGRASP_EXPORT MinimalGrippersOptions {
@@ -27,14 +27,14 @@ struct MMGRASP_EXPORT MinimalGrippersOptions {
   double longest_finger = 0.5;    ///< No finger is longer [m], >= shortest_finger.
   double opening_margin = 0;      ///< Stroke kept free beyond the part at either end [m], >= 0; less than half of it.
   double length_margin = 0;       ///< Kept from either limit of the finger length [m], >= 0.
-  double finger_width = 0.015, finger_thickness = 0.008;  ///< Of the grippers returned [m], > 0.
+  double finger_width = 0.015, finger_thickness = 0.008;  ///< Fingers of the grippers returned [m], > 0.
   /// Cost of changing the gripper between two operations, >= 0. At 0 changes cost nothing, but of all cheapest sets one
   /// with the fewest changes is taken.
   double change_cost = 0;
   /// Values of the largest opening and of the finger length on P1's grid (n and m of 5.3.4); 0 and 0: every gripper
   /// that matters, exactly.
   int grid_openings = 0, grid_lengths = 0;
-  int max_nodes = 20000;   ///< Of the search for fewest changes, > 0.
+  int max_nodes = 20000;   ///< Most nodes of the search for fewest changes, > 0.
   double time_limit = 60;  ///< Wall-clock cap [s], > 0.
   void check() const;
 };
@@ -43,13 +43,13 @@ struct MMGRASP_EXPORT MinimalGrippersResult {
   /// `solved`: proven, in cost and changes (on a grid: of the grid's grippers); `approximate`: a set that takes every
   /// part, `lower_bound` and `changes_bound` say what is proven; `infeasible`: see `explanations`; `stopped`.
   Outcome outcome = Outcome::timeout;
-  std::vector<Gripper> grippers;          ///< In the order of first use.
-  std::vector<std::string> parts;         ///< In the order of assembly.
+  std::vector<Gripper> grippers;          ///< The grippers chosen, in the order of first use.
+  std::vector<std::string> parts;         ///< Names of the parts, in the order of assembly.
   std::vector<int> gripper_of_part;       ///< Which of `grippers` takes it; one per part.
-  std::vector<int> requirement_of_part;   ///< By which of the requirements given; one per part.
-  double cost = 0;                        ///< Of the grippers and of the changes.
+  std::vector<int> requirement_of_part;   ///< Which of the requirements given it takes the part by; one per part.
+  double cost = 0;                        ///< Cost of the grippers and of the changes.
   double lower_bound = 0;                 ///< Proven: no set of grippers costs less.
-  int changes = 0;                        ///< Of the gripper from part to part.
+  int changes = 0;                        ///< How often the gripper changes from part to part.
   int changes_bound = 0;                  ///< Proven: no set of the same cost needs fewer.
   int candidates = 0;                     ///< Grippers that were chosen among, none doing only what another does.
   std::vector<std::string> uncovered;     ///< Parts that no gripper takes, in order.

@@ -18,7 +18,7 @@ struct MMGRASP_EXPORT OccupancyOptions {
   double resolution = 0.02;  ///< Edge of the smallest cell [m]; in [1e-4, 1e3].
   double hit = 0.7;          ///< Probability of being occupied that a cell gets from one depth in it; in (0.5, 1).
   double miss = 0.4;         ///< The same from a ray through it; in (0, 0.5).
-  /// Of a longer ray only the first part counts, as free [m]; > 0.
+  /// A longer ray counts up to here only, as free [m]; > 0.
   double max_range = std::numeric_limits<double>::infinity();
   void check() const;
 };
@@ -74,7 +74,7 @@ class MMGRASP_EXPORT OccupancyMap {
   int frames() const;                  ///< Integrated since the map was made or loaded.
   std::size_t cells() const;           ///< Leaves, free and occupied.
   std::size_t memory() const;          ///< [bytes]
-  Eigen::AlignedBox3d bounds() const;  ///< Of the known cells [m]; empty without any.
+  Eigen::AlignedBox3d bounds() const;  ///< Box around the known cells [m]; empty without any.
 
   /// Writes OctoMap's format, under a temporary name first: .bt (occupied or free) or .ot (with probabilities) by the
   /// name's ending, another is refused. Throws IoError naming the file.

@@ -167,8 +167,8 @@ class MMGRASP_EXPORT ProbabilisticSdf {
 
   int frames() const;                  ///< Integrated so far.
   std::size_t blocks() const;          ///< Blocks of 8 x 8 x 8 voxels.
-  std::size_t memory() const;          ///< Of the blocks and their index [bytes].
-  Eigen::AlignedBox3d bounds() const;  ///< Of the blocks [m]; empty without any.
+  std::size_t memory() const;          ///< Size of the blocks and their index [bytes].
+  Eigen::AlignedBox3d bounds() const;  ///< Box around all blocks [m]; empty without any.
 
   /// Writes a file of its own format, under a temporary name first. Throws IoError naming the file.
   void save(const std::string& path) const;

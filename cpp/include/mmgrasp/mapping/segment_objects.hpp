@@ -34,8 +34,8 @@ struct MMGRASP_EXPORT SupportingPlane {
 };
 
 struct MMGRASP_EXPORT SegmentedObject {
-  std::vector<int> indices;    ///< Of its points, ascending.
-  Eigen::AlignedBox3d bounds;  ///< Of its points, along the axes of their frame [m].
+  std::vector<int> indices;    ///< Indices of its points, ascending.
+  Eigen::AlignedBox3d bounds;  ///< Box around its points, along the axes of their frame [m].
 };
 
 struct MMGRASP_EXPORT ObjectSegmentation {

@@ -24,6 +24,7 @@ struct MMGRASP_EXPORT SearchVariable {
   std::string name;
   Kind kind = Kind::real;
   double lower = 0, upper = 1;  ///< Finite; whole for whole numbers and categories.
+  double mutation = 0;  ///< "ga", of a real one: half width of its mutation; 0: by PopulationOptions::mutation_size.
 };
 
 /// What a point is worth: constraints broken, and the objective, which counts only where none is.
@@ -63,10 +64,12 @@ struct MMGRASP_EXPORT PopulationOptions {
   double neighbourhood = 0.2;  ///< Its width as a share of each range at first; in (0, 1]. P2 does not print it.
   double shrinking = 0.8;      ///< Factor after a round without progress; in (0, 1]. P2 does not print it.
   // "ga"
-  double mutation_rate = 0.3;   ///< Chance of each variable; in [0, 1].
-  double mutation_size = 0.25;  ///< Half width of a real variable's mutation as a share of its range; in (0, 1].
+  double mutation_rate = 0.3;  ///< Chance of each variable; in [0, 1].
+  /// Half width of a real variable's mutation as a share of its range, where the variable has none of its own; in
+  /// (0, 1].
+  double mutation_size = 0.25;
   // "pso"
-  double connectivity = 0.5;  ///< Share of the others each particle hears of; in (0, 1].
+  double connectivity = 0.5;  ///< Share of the swarm, the closest ones, that each particle hears of; in (0, 1].
   double inertia = 0.7;       ///< >= 0
   double acceleration = 2.0;  ///< c1 and c2; > 0.
   void check() const;
@@ -100,7 +103,7 @@ class MMGRASP_EXPORT PopulationSearch {
 };
 
 /// "bees" (Bees Algorithm; Pham et al. 2006; P2 Algorithm 3.2), "ga" (binary tournaments, one-point crossover, mutation
-/// as P2 3.5.1), "pso" (particle swarm with random neighbours, discrete variables copied as P2 3.5.1).
+/// as P2 3.5.1), "pso" (particle swarm; each particle hears of the closest ones and copies categories, as P2 3.5.1).
 MMGRASP_EXPORT std::vector<std::string> population_search_names();
 /// Throws InvalidInput listing the known names on a wrong one.
 MMGRASP_EXPORT std::unique_ptr<PopulationSearch> make_population_search(const std::string& name);

@@ -96,8 +96,9 @@ struct MMGRASP_EXPORT GraspReport {
 struct MMGRASP_EXPORT StageReport {
   PlanStage stage = PlanStage::search;
   int improvements = 0;
-  double first_seconds = 0, last_seconds = 0;  ///< Of its first and its last improvement, as Improvement::seconds.
-  double cost = 0;                             ///< Of its last improvement.
+  double first_seconds = 0,
+         last_seconds = 0;  ///< When its first and its last improvement came, as Improvement::seconds.
+  double cost = 0;          ///< Cost after its last improvement.
 };
 
 struct MMGRASP_EXPORT ManipulationStats {

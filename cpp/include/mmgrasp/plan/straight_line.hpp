@@ -24,8 +24,9 @@ struct MMGRASP_EXPORT StraightLineResult {
   Outcome outcome = Outcome::not_found;
   std::optional<JointPath> path;  ///< From q_start to T_world_to; set if and only if solved.
   double fraction = 0;            ///< How far along the line the last good waypoint lies, in [0, 1].
-  Rejection cause =
-      Rejection::none;             ///< Why the line ended there: reach (also: a jump), limits, self_collision, scene.
+  /// Why the line ended there: unreachable (also when only a jump of the joints leads on), limits, self_collision or
+  /// scene.
+  Rejection cause = Rejection::none;
   std::optional<Contact> contact;  ///< What touches there, when something does.
   std::string beyond_limits;       ///< With invalid_start: as in MotionResult. Empty: none is.
 };

@@ -69,7 +69,7 @@ class MMGRASP_EXPORT CapabilityMap {
   static CapabilityMap load(const std::string& path);
 
   const CapabilityOptions& options() const;
-  /// Of robot, group and where the other joints are held: what restricted() compares.
+  /// Names the robot, the group and where the other joints are held: what restricted() compares.
   const std::string& arm_key() const;
   const std::array<int, 3>& shape() const;  ///< Voxels along x, y, z.
   std::int64_t voxel_count() const;

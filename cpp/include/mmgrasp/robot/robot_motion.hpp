@@ -28,12 +28,12 @@ struct MMGRASP_EXPORT GripperEvent {
 ///     motion.append(robot_motion(lift, base_pose));  // must begin where the motion stands
 ///     write(motion.to_csv());
 struct MMGRASP_EXPORT RobotMotion {
-  std::vector<std::string> joints;  ///< Of the arm; one per column.
+  std::vector<std::string> joints;  ///< Names of the arm's joints; one per column.
   std::vector<double> times;        ///< [s], from 0, strictly increasing.
   std::vector<Eigen::VectorXd> positions, velocities, accelerations;
   std::vector<Eigen::Vector3d> base_poses;   ///< x, y, theta in the world; theta is not wrapped.
   std::vector<Eigen::Vector3d> base_twists;  ///< v_x, v_y, omega in the platform's frame, as in ROS.
-  std::vector<GripperEvent> gripper;         ///< In the order of their times.
+  std::vector<GripperEvent> gripper;         ///< What the gripper does, ordered by time.
 
   double duration() const { return times.empty() ? 0.0 : times.back(); }
   /// Base and arm stand still at the end for so long [s], e.g. while the gripper closes.
@@ -47,9 +47,9 @@ struct MMGRASP_EXPORT RobotMotion {
   std::string to_csv() const;
 };
 
-/// Of a trajectory: columns x, y, theta, where it begins with them, are the base's; otherwise the base stands at
-/// `base_pose` (the origin when not given). Throws InvalidInput for a trajectory without velocities or accelerations,
-/// and for a `base_pose` beside a base that moves.
+/// Makes the motion of a trajectory: columns x, y, theta, where it begins with them, are the base's; otherwise the base
+/// stands at `base_pose` (the origin when not given). Throws InvalidInput for a trajectory without velocities or
+/// accelerations, and for a `base_pose` beside a base that moves.
 MMGRASP_EXPORT RobotMotion robot_motion(const JointTrajectory& trajectory,
                                         const std::optional<Eigen::Vector3d>& base_pose = {});
 

@@ -5,10 +5,16 @@
 #include <vector>
 
 #include "mmgrasp/core/export.hpp"
+#include "mmgrasp/core/pose.hpp"
 #include "mmgrasp/structure/beam_section.hpp"
 #include "mmgrasp/structure/pipe.hpp"
 
 namespace mmgrasp {
+
+struct BeamState;
+struct BeamSupport;
+struct Grasp;
+inline constexpr double kGravity = 9.81;  ///< [m/s2], as P2 takes it.
 
 /// A straight beam welded to its two nodes.
 struct MMGRASP_EXPORT BeamMember {
@@ -41,17 +47,23 @@ struct MMGRASP_EXPORT BeamFrame {
   std::vector<NodeLoad> loads;
 
   /// Throws InvalidInput naming field, value and rule: finite nodes, each of a member; members at least kShortest long,
-  /// no two of the same nodes, all connected; sections and materials that can be; loads on nodes that exist.
+  /// no two of the same nodes, all connected; sections and materials that can be, stress limits only where stresses are
+  /// known; loads on nodes that exist.
   void check() const;
 
   static constexpr double kShortest = 1e-6;           ///< [m]
   double length(int member) const;                    ///< Between the member's nodes [m].
   Eigen::Matrix3d R_object_member(int member) const;  ///< Columns: x along the member, y and z of its cross section.
-  double mass() const;                                ///< Of members and loads [kg].
+  double mass() const;                                ///< Mass of members and loads together [kg].
   Eigen::Vector3d centre_of_mass() const;             ///< [m]; throws InvalidInput when nothing has mass.
   /// The same frame with a node more on a member, 0 < distance < length: the member keeps the first part, the second
   /// part comes last. Nothing else changes, nor does how it bends.
   BeamFrame split(int member, double distance) const;
+  /// How it bends when a hand holds it there in this pose, or several supports do; include supported_frame.hpp. For
+  /// many poses of one grasp keep a SupportedFrame. Throws as that does. `gravity` along the world's -z [m/s2].
+  BeamState deflection(const Grasp& grasp, const Pose& T_world_object, double gravity = kGravity) const;
+  BeamState deflection(const std::vector<BeamSupport>& supports, const Pose& T_world_object,
+                       double gravity = kGravity) const;
   /// (6n, 6n) of the free frame: node by node displacement, then rotation, in the object's frame.
   Eigen::MatrixXd stiffness() const;
 };

@@ -22,7 +22,7 @@ namespace mmgrasp {
 struct MMGRASP_EXPORT ObjectPathProblem {
   JointGroup group;                    ///< Its tip is the tool frame of grasps.
   World world;                         ///< Without the object.
-  std::vector<LinkShape> object;       ///< In the object's frame; never empty.
+  std::vector<LinkShape> object;       ///< The object's shapes, placed in its frame; never empty.
   Poses T_world_object;                ///< Where it lies, then where it goes: at least two.
   std::optional<Hand> gripper;         ///< Opens its fingers as each grasp says; none: they stay as the group has them.
   std::set<std::string> touch_links;   ///< Links that may touch the object; empty: as World::attach says.
@@ -47,13 +47,14 @@ struct MMGRASP_EXPORT ObjectPathOptions {
   double rotation_tolerance = 0.05;  ///< And turned by no more than this from it [rad]; > 0.
   double edge_step = 0.02;           ///< No joint moves more than this between two collision checks [rad or m]; > 0.
   bool check_edges = true;           ///< Check motions between waypoints, which P2's Algorithm 3.1 leaves out.
-  /// Only one arm configuration at each pose, as P2's single-IK variant has it (3.5.2.4): what a numerical solver finds
-  /// from the one before, at first from the middle of the joints' limits, and from random starts where that fails.
+  /// Only one arm configuration at each pose, as P2's single-IK variant has it (3.5.2.4): the nearest to the one
+  /// before, at first to where the arm stands (JointGroup::reference). Arms without closed form and moving bases: what
+  /// a numerical solver finds from there, and from random starts where that fails.
   bool single_configuration = false;
   bool all_turns = true;      ///< Joints that may turn more than once come in every turn.
   int redundant_values = 0;   ///< Samples of a seventh joint, evenly over its range; 0: 24. >= 0.
-  double base_spacing = 0.2;  ///< Of the places where a moving base may stand, a grid along x and y [m]; > 0.
-  int base_headings = 4;      ///< Of the base at each place, evenly over a turn; > 0.
+  double base_spacing = 0.2;  ///< Distance of the places where a moving base may stand, a grid along x and y [m]; > 0.
+  int base_headings = 4;      ///< Base headings tried at each place, evenly over a turn; > 0.
   double gravity = kGravity;  ///< Along the world's -z [m/s2]; >= 0.
   double max_sag = 0;         ///< At each pose the object may bend by no more than this [m]; 0: as it likes. >= 0.
   void check() const;
@@ -71,20 +72,22 @@ struct MMGRASP_EXPORT ObjectPathResult {
   /// Poses at which the object bends by more than `max_sag`, or bears more stress than its material's limit where one
   /// is given.
   std::vector<int> overloaded;
-  /// Cost(C) of P2 3.3.1: the sum of `violations` and one for each pose of `overloaded`, or, when all that is zero, the
-  /// number of gaps that no allowed motion bridges. Zero if and only if solved.
+  /// Cost(C) of P2 3.3.1, zero if and only if solved: the sum of `violations` plus one for each pose in `overloaded`.
+  /// When that sum is zero and there is still no path, the number of pairs of neighbouring poses between which no
+  /// motion is allowed.
   int violation = 0;
-  /// Of each pose: 2 when no arm configuration reaches it, 1 when all that do collide, else 0.
+  /// One number for each pose: 2 when no arm configuration reaches it, 1 when all that do collide, else 0.
   std::vector<int> violations;
   Rejections rejections;   ///< Configurations rejected, of those that were checked.
   int refused_edges = 0;   ///< Motions between waypoints that collide or leave the object's path.
   int configurations = 0;  ///< Arm configurations found over all poses.
 };
 
-/// Costs grasps along one path: prepared once, asked thousands of times. Over all arm configurations at all poses the
-/// least cost is found by dynamic programming, from all first configurations at once. Collisions are checked only along
-/// the best sequence so far; what collides leaves and the next best is found, so the answer is that of checking
-/// everything. Not thread-safe; clones share nothing.
+/// Evaluates what one grasp after another costs along the same path; what does not depend on the grasp is prepared
+/// once. For each grasp the cheapest sequence of arm configurations, one at each pose, is found by dynamic programming.
+/// Only the cheapest sequence is checked for collisions; configurations and motions that collide are removed and the
+/// next cheapest is found, until one is free: the same answer as checking every configuration. Not thread-safe; clones
+/// share nothing.
 ///
 ///     ObjectPathEvaluator evaluator(problem);
 ///     for (const Grasp& grasp : grasps) keep_best(grasp, evaluator.evaluate(grasp));

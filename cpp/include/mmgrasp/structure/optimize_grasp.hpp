@@ -24,9 +24,13 @@ struct MMGRASP_EXPORT GraspSearchOptions {
   /// A name of population_search_names(), or "branch_and_bound": bees first, then boxes of grasps are divided until
   /// none can be cheaper by more than max_gap. For arms of six joints whose axes 2 and 3 are parallel and 4, 5 and 6
   /// meet, or 2, 3 and 4 are parallel and 5 and 6 meet.
+  /// See default_grasp_search().
   std::string algorithm = "bees";
   GraspNeighbourhood neighbourhood = GraspNeighbourhood::connected_sections;
   PopulationOptions population;
+  /// Further searches with as many evaluations, each for another mix of the three objectives, so that the Pareto front
+  /// is searched and not only passed; >= 0.
+  int front_searches = 0;
   double max_gap = 1e-3;    ///< branch_and_bound: as a share of the cost; in (0, 1).
   int max_boxes = 1000000;  ///< branch_and_bound: budget in boxes bounded; > 0.
   double time_limit = 600;  ///< branch_and_bound: wall-clock cap [s]; > 0.
@@ -34,6 +38,9 @@ struct MMGRASP_EXPORT GraspSearchOptions {
   PipeGraspOptions grasp;   ///< Axes of the hand, widest opening, margin kept from nodes; its sampling is not used.
   void check() const;
 };
+
+/// "branch_and_bound" for arms that it takes, else "bees": what `mmgrasp pipe` searches with unless told otherwise.
+MMGRASP_EXPORT std::string default_grasp_search(const JointGroup& group);
 
 /// Names that GraspSearchOptions::algorithm takes.
 MMGRASP_EXPORT std::vector<std::string> grasp_search_names();
@@ -52,19 +59,21 @@ struct MMGRASP_EXPORT GraspOptimum {
   double lower_bound = 0;
   double gap = 1;         ///< How much cheaper another grasp could be at most, as a share of the cost found.
   Grasp grasp;            ///< Only with a path.
-  ObjectPathResult path;  ///< By follow_object_path: checked more finely than the search does.
+  ObjectPathResult path;  ///< The best grasp's path by follow_object_path, checked more finely than the search does.
   /// Every grasp that the search found feasible, the cheapest first: candidates for other planners, which find their
   /// cost in them. The first has passed the finer check, too.
   std::vector<FeasibleGrasp> feasible;
-  /// Which of them no other beats in one objective without losing in another (the Pareto front), ascending in O1.
+  /// Which of them no other beats in one objective without losing in another (the Pareto front), each grasp with its
+  /// cheapest motion; ascending in O1. Searched with GraspSearchOptions::front_searches, else what the search passed.
   std::vector<int> front;
-  int evaluations = 0;
+  int evaluations = 0;          ///< Grasps tried, those in the middles of boxes among them.
   int boxes = 0;                ///< Bounded by branch_and_bound.
-  std::vector<double> history;  ///< Best cost after each evaluation; infinite while nothing was feasible.
+  std::vector<double> history;  ///< Best cost after each evaluation of the population; infinite: nothing feasible yet.
   /// Poses in order, each with how many of the grasps tried could not reach it and at how many all arm configurations
   /// collided.
   std::vector<int> unreachable, colliding;
-  std::vector<int> overloaded;  ///< Of each pose: with how many of them the pipe bends or bears more than it may there.
+  std::vector<int>
+      overloaded;  ///< For each pose: with how many of them the pipe bends or bears more than it may there.
 };
 
 /// The feasible grasps, each with its mean sag after the first pose [m] as its cost: for plan_manipulation with

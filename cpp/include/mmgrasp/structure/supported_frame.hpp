@@ -39,7 +39,8 @@ struct MMGRASP_EXPORT BeamState {
   Matrix6Xd reactions;
   BeamExtreme displacement;  ///< The largest anywhere along the members [m].
   /// Largest von Mises stress [Pa] of normal force, bending and torsion at the farthest fibres; shear forces, which
-  /// are small in slender beams and zero there, are left out. None when a section's extents are not known.
+  /// are small in slender beams and zero there, are left out. Of the members whose section's extents are known; none
+  /// without such a member.
   std::optional<BeamExtreme> stress;
   std::optional<BeamExtreme> over_limit;  ///< Largest stress over its material's limit [1]; none without either.
 };
@@ -71,7 +72,6 @@ class MMGRASP_EXPORT SupportedFrame {
   std::shared_ptr<const Data> data_;
 };
 
-inline constexpr double kGravity = 9.81;  ///< [m/s2], as P2 takes it.
 /// Gravity as an object with this pose feels it, in the object's frame; down is the world's -z.
 MMGRASP_EXPORT Eigen::Vector3d gravity_in_object(const Pose& T_world_object, double gravity = kGravity);
 

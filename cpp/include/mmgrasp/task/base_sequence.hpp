@@ -36,8 +36,8 @@ struct MMGRASP_EXPORT Intersections {
   std::size_t sets_tried = 0;
   std::size_t sets_too_small = 0;  ///< Shared cells, but the disc is too small.
   bool complete = true;  ///< False: `max_sets` ended the search; minimality then holds for the sets found only.
-  /// The sets that are too small, up to 200, largest radius first: why each alternative was rejected.
-  std::vector<Intersection> lost;
+  /// The sets whose disc is too small, largest radius first; the 200 largest are kept.
+  std::vector<Intersection> too_small;
 };
 
 /// Every set of trays (single ones included) whose shared cells hold a disc of at least `min_radius`. `regions` holds
@@ -53,7 +53,7 @@ MMGRASP_EXPORT Intersections robust_intersections(const BaseGrid& grid, const st
 /// The search is on the floor, not on the sets: boxes of base positions are split until the trays that each could serve
 /// at most are known. No disc smaller than `min_radius` by more than 1e-9 m counts; sets whose disc is within 1e-6 m of
 /// it may be judged either way. `complete` is false when `max_boxes` a layer or the monitor ended the search.
-/// sets_tried counts the sets found, `lost` stays empty.
+/// sets_tried counts the sets found, `too_small` stays empty.
 MMGRASP_EXPORT Intersections maximal_intersections(const BaseGrid& grid, const std::vector<BaseRegion>& regions,
                                                    double min_radius, std::size_t max_boxes = 50'000'000,
                                                    const Monitor& monitor = {});

@@ -31,14 +31,15 @@ struct MMGRASP_EXPORT DriveByPush {
 struct MMGRASP_EXPORT DriveByTask {
   std::vector<Pose> candidates;           ///< Poses of the group's tip, any of which will do; at least one.
   Vector6d tolerance = Vector6d::Zero();  ///< Per axis of the pose's frame, x y z [m], then turns [rad]; >= 0, < inf.
-  std::vector<bool> free = std::vector<bool>(6, false);  ///< Axes of the pose whose error does not matter at all.
+  std::vector<bool> free_axes =
+      std::vector<bool>(6, false);  ///< True for axes of the pose along or about which any error is allowed.
   double max_tool_speed =
       std::numeric_limits<double>::infinity();  ///< Speed limit of the tip at the task [m/s]; > 0 (P1 4.3).
   double dwell = 0;  ///< The tool's pose is kept that long [s], e.g. while a gripper closes; >= 0.
-  /// Object of the world that is held afterwards, in place of what was held before; empty: none. It is an obstacle for
-  /// the whole robot, the open hand included, until the task is reached; while the tool dwells there the fingers alone
-  /// may touch it, and once held it keeps clear of everything. One that rests on something counts as 1 mm higher from
-  /// then on.
+  /// Object of the world that is attached afterwards, in place of what was attached before; empty: none. It is an
+  /// obstacle for the whole robot, the open hand included, until the task is reached; while the tool dwells there the
+  /// fingers alone may touch it, and once attached it keeps clear of everything. One that rests on something counts as
+  /// 1 mm higher from then on.
   std::string object;
   std::optional<DriveByPush> push;  ///< Without dwell, max_tool_speed, tolerance and free axes.
 };
@@ -71,8 +72,8 @@ struct MMGRASP_EXPORT DriveByEvent {
   int waypoint = 0;                      ///< Waypoint of the task; of a push-grasp, where both fingers touch.
   double time = 0;                       ///< [s]
   double close_time = 0;                 ///< When a gripper begins to close [s].
-  std::string object;                    ///< What is held from then on; empty: nothing new.
-  Pose T_tip_object = Pose::Identity();  ///< How the object is held.
+  std::string object;                    ///< What is attached from then on; empty: nothing new.
+  Pose T_tip_object = Pose::Identity();  ///< Pose of the attached object in the tip's frame.
   double attach_time = 0;                ///< When the object begins to move with the tip [s]: the end of the dwell.
   int candidate = 0;                     ///< Index of the candidate that was taken.
   double base_speed = 0;                 ///< Speed of the base at the waypoint [m/s].

@@ -4,8 +4,9 @@
 
 namespace mmgrasp {
 
-/// Index of a tray in PartSupplyProblem::trays, and of its region in every list that holds one region a tray. Made from
-/// a number explicitly, read as a number.
+/// Index of a tray in PartSupplyProblem::trays, and of its region in every list that holds one region a tray. A number
+/// becomes a TrayId only by naming the type, so that no other index is taken for one; a TrayId may be used wherever an
+/// index is wanted. Python has plain int instead.
 class MMGRASP_EXPORT TrayId {
  public:
   constexpr TrayId() = default;  ///< No tray.
@@ -28,7 +29,7 @@ inline bool operator==(const PartRef& a, const PartRef& b) {
 inline bool operator!=(const PartRef& a, const PartRef& b) {
   return !(a == b);
 }
-/// By tray, then by part.
+/// Orders parts by tray, then by part.
 inline bool operator<(const PartRef& a, const PartRef& b) {
   return a.tray != b.tray ? a.tray < b.tray : a.part < b.part;
 }

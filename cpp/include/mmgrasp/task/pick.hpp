@@ -21,8 +21,8 @@ MMGRASP_EXPORT const char* to_string(MotionKind kind);
 /// One timed arm motion of a pick.
 struct MMGRASP_EXPORT PickMotion {
   MotionKind kind = MotionKind::transit;
-  double opening = 0;    ///< Opening of the fingers during the motion [m].
-  bool holding = false;  ///< The object is attached during the motion.
+  double opening = 0;     ///< Opening of the fingers during the motion [m].
+  bool attached = false;  ///< The object is attached during the motion.
   JointTrajectory trajectory;
 };
 

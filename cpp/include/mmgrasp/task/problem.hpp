@@ -76,7 +76,7 @@ MMGRASP_EXPORT void check_arrival_covariance(const Eigen::Matrix3d& covariance);
 ///     problem.options.positioning_uncertainty = 0.05;
 ///     const PartSupplyPlan plan = plan_part_supply(problem, ReachDatabase::build(arm));
 ///
-/// - The scene holds obstacles, tables, trays; parts are kept apart because they are removed one by one.
+/// - `world` holds obstacles, tables, trays; parts are kept apart because they are removed one by one.
 /// - `arm` has no base joints; its reference holds the other joints (head, ...) and the fingers at rest.
 /// - Stops are planned so that they still work when the base comes to stand anywhere in the disc of
 ///   `options.positioning_uncertainty` about them.
@@ -84,7 +84,7 @@ struct MMGRASP_EXPORT PartSupplyProblem {
   Robot robot;
   JointGroup arm;
   Hand gripper;
-  World scene;
+  World world;  ///< Obstacles, tables and trays, without the parts.
   std::vector<Tray> trays;
   Eigen::VectorXd home;                             ///< Arm configuration while driving, fingers closed.
   Eigen::Vector3d start = Eigen::Vector3d::Zero();  ///< Base pose x, y, theta [m, m, rad].

@@ -21,22 +21,24 @@ struct MMGRASP_EXPORT WholeBodyGuess {
   std::vector<Eigen::VectorXd> positions;  ///< Configuration at each waypoint.
   std::vector<Eigen::VectorXd> drive;      ///< Drive velocity at each; empty: from differences of the positions.
   std::vector<double> steps;               ///< Time step of each segment [s]; > 0.
-  bool free = false;  ///< It is known to be free of collisions: the search starts with constraints along it.
-  /// With `free`: bodies that collide later are separated the way they lie here. Off for motions that will move far.
-  bool parts_bodies = true;
+  /// The guess is known to be free of collisions: the search starts with collision constraints along it.
+  bool collision_free = false;
+  /// With `collision_free`: two bodies that come into collision during the search are pushed apart to the sides on
+  /// which they lie in the guess. Off for motions that will move far from it.
+  bool keeps_sides = true;
 };
 
 /// Options of optimize_whole_body().
 struct MMGRASP_EXPORT WholeBodyOptions {
-  std::string solver = "ipopt";  ///< A name of nlp_solver_names().
-  double tolerance = 1e-4;       ///< Relative optimality, in (0, 1).
-  int max_iterations = 150;      ///< Iterations of one solve, of which there are at most 1 + refinements; > 0.
-  double time_limit = 600.0;     ///< Wall-clock cap [s], for runs that are not to end by their iterations; > 0.
-  double smoothing = 1e-2;       ///< Weight of the mean square of accelerations over their limits [s]; >= 0.
-  double warm_start = 0;         ///< See NlpOptions.
-  double margin = 0.005;         ///< Distance to keep from obstacles and from oneself [m]; >= 0.
-  double look_out = 0.15;        ///< Pairs of bodies nearer than this are constrained [m]; > margin.
-  int refinements = 6;           ///< Times that collision constraints may be added and the solve repeated; >= 0.
+  std::string solver = "ipopt";       ///< A name of nlp_solver_names().
+  double tolerance = 1e-4;            ///< Relative optimality, in (0, 1).
+  int max_iterations = 150;           ///< Iterations of one solve, of which there are at most 1 + refinements; > 0.
+  double time_limit = 600.0;          ///< Wall-clock cap [s], for runs that are not to end by their iterations; > 0.
+  double smoothing = 1e-2;            ///< Weight of the mean square of accelerations over their limits [s]; >= 0.
+  double warm_start = 0;              ///< See NlpOptions.
+  double margin = 0.005;              ///< Distance to keep from obstacles and from oneself [m]; >= 0.
+  double constraint_distance = 0.15;  ///< Pairs of bodies nearer than this are constrained [m]; > margin.
+  int refinements = 6;                ///< Times that collision constraints may be added and the solve repeated; >= 0.
   void check() const;
 };
 

@@ -42,7 +42,7 @@ struct MMGRASP_EXPORT CheckedFinger {
 struct MMGRASP_EXPORT CheckedMotion {
   std::string kind;  ///< transit, approach, lift, transfer, retreat
   double opening = 0;
-  bool holding = false;
+  bool attached = false;
   std::vector<double> times;
   std::vector<Eigen::VectorXd> positions, velocities;
   std::vector<Eigen::VectorXd> accelerations = {};  ///< Empty: not given.
@@ -86,13 +86,13 @@ struct MMGRASP_EXPORT CheckedGrid {
 /// How base poses for a tray were searched.
 struct MMGRASP_EXPORT CheckedTray {
   std::vector<double> headings;                                   ///< Base headings tried [rad].
-  Eigen::Vector2d middle = Eigen::Vector2d::Zero();               ///< Of the tray, in the world [m].
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();               ///< Middle of the tray, in the world [m].
   double max_distance = std::numeric_limits<double>::infinity();  ///< Base poses farther from it were left out [m].
   bool shares_headings = false;  ///< Tried at other trays' headings, too, where one of these trays can be served.
 };
 
 /// What a plan says about a leg of its route.
-struct MMGRASP_EXPORT CheckedLegFigures {
+struct MMGRASP_EXPORT CheckedLegValues {
   double length = 0, turning = 0, duration = 0;
 };
 
@@ -137,7 +137,7 @@ struct MMGRASP_EXPORT PlanToCheck {
   Eigen::VectorXd home;
   Eigen::Vector3d start = Eigen::Vector3d::Zero(), goal = Eigen::Vector3d::Zero();
   double positioning_uncertainty = 0.1;
-  /// Of x, y [m^2] and theta [rad^2] about a stop, in the world's axes; zero: arrivals are not judged.
+  /// Covariance of x, y [m^2] and theta [rad^2] about a stop, in the world's axes; zero: arrivals are not judged.
   Eigen::Matrix3d arrival_covariance = Eigen::Matrix3d::Zero();
   Pose T_base_bin = Pose::Identity();
   Eigen::Vector2d bin_size = Eigen::Vector2d(0.3, 0.3);
@@ -152,7 +152,8 @@ struct MMGRASP_EXPORT PlanToCheck {
   /// nothing.
   bool padded = false;
   std::vector<std::string> trays;
-  std::map<std::string, CheckedTray> searched;  ///< By tray; one that is not named may have any region.
+  std::map<std::string, CheckedTray>
+      searched;  ///< What was searched for each tray, by name; one that is not named may have any region.
   CheckedGrid grid;
   std::vector<CheckedRegion> regions;
   std::vector<CheckedStop> stops;
@@ -161,7 +162,7 @@ struct MMGRASP_EXPORT PlanToCheck {
   std::vector<CheckedDriveBy> drive_by;  ///< What of route and picks is done in passing.
   double closing_speed = 0.1;            ///< How fast the gripper's opening shrinks [m/s], for drive_by.
   int lower_bound = 0;
-  std::vector<CheckedLegFigures> route_figures;  ///< One a leg; empty: not given.
+  std::vector<CheckedLegValues> leg_values;  ///< One a leg; empty: not given.
   std::vector<CheckedIntersection> intersections;
   double robustness_rate = std::numeric_limits<double>::quiet_NaN();  ///< NaN: not given.
 };
@@ -193,7 +194,7 @@ struct MMGRASP_EXPORT PlanCheckOptions {
 /// - which part is picked: `part-unknown`, `part-forgotten`, `part-repeated`, `part-not-target`, `wrong-tray`,
 ///   `wrong-stop`, `stop-order`, `grasp-invalid` (no such index), `tray-unknown`, `tray-forgotten`, `tray-repeated`;
 /// - one arm motion: `motion-order`, `motion-shape` (lengths, NaN), `times`, `too-long`, `position-limit`,
-///   `velocity-limit`, `acceleration-limit`, `discontinuous`, `not-at-rest`, `opening`, `holding`, `self-collision`,
+///   `velocity-limit`, `acceleration-limit`, `discontinuous`, `not-at-rest`, `opening`, `attachment`, `self-collision`,
 ///   `scene-collision`, `attached-collision`;
 /// - what it is for: `not-straight` (approach, lift), `short-approach`, `grasp-missed`, `grasp-empty` (fewer than two
 ///   fingers close on it, or a listed grasp has nothing between the pads), `grasp-opening` (pads at this width would
@@ -207,9 +208,9 @@ struct MMGRASP_EXPORT PlanCheckOptions {
 ///   `stop-outside-region`, `not-minimal`, `lower-bound`, `not-robust`, `arrival-rate` (arrivals serve all parts more
 ///   or less often than said, by more than chance), `region-inflated` (base poses in it that serve nothing),
 ///   `region-incomplete` (cells left out that serve everything: the least number of stops is then not proven);
-/// - what only describes: `route-figures` (length, turning, duration), `acceleration` (stored ones above the limits or
-///   not those of the velocities), `bad-figures` (robustness rate below what is required or above 1, intersections that
-///   lie elsewhere).
+/// - what only describes: `route-values` (length, turning, duration), `acceleration` (stored ones above the limits or
+///   not those of the velocities), `wrong-values` (robustness rate below what is required or above 1, intersections
+///   that lie elsewhere).
 struct MMGRASP_EXPORT Fault {
   std::string code;
   std::string where;    ///< E.g. "pick 3 (A/bracket_02), lift, t = 1.24 s".
@@ -235,9 +236,10 @@ struct MMGRASP_EXPORT PlanCheckResult {
 };
 
 /// Checks a finished plan against its scenario: the robot read again by urdfdom and assimp, kinematics by KDL,
-/// collisions by FCL, the cover solved again by CBC on discs found by searching the floor. Shares no code with the
-/// planners. A broken plan gives
-/// faults, never an exception; only unusable options throw (InvalidInput). Same answer at any thread count.
+/// collisions by FCL, the cover solved again by CBC on discs found by searching the floor. No planner, robot model,
+/// kinematics or collision code of mmgrasp takes part; docs/methods/verify.md lists the little that is shared (poses,
+/// random numbers, threads, closing of meshes). A broken plan gives faults, never an exception; only unusable options
+/// throw (InvalidInput). Same answer at any thread count.
 ///
 /// Between samples a motion is the cubic through positions and velocities. Limits on positions hold on all of it (slack
 /// 1e-6), on velocities at the samples (1 %) and between them (5 %), and some motion within 1 % of the acceleration

@@ -20,7 +20,7 @@ class MMGRASP_EXPORT EdgeMotion {
   /// To be called when a check was placed.
   void placed() { velocities_valid_ = false; }
 
-  /// Of plan().moving[body] in the world, up to `reach` pieces away.
+  /// How plan().moving[body] moves in the world, up to `reach` pieces away.
   Closing of_body(int body, double reach);
   /// How much closer the bodies of plan().varying[pair] come to each other.
   Closing of_pair(int pair, double reach);
@@ -33,7 +33,7 @@ class MMGRASP_EXPORT EdgeMotion {
   static double with_slack(double motion) { return motion * (1 + 1e-5) + 1e-7; }
 
   struct Velocity {
-    Eigen::Vector3d origin, linear, angular;  ///< Of the frame's origin, per piece.
+    Eigen::Vector3d origin, linear, angular;  ///< The frame's origin and its velocities per piece.
     Eigen::Vector3d at(const Eigen::Vector3d& p) const { return linear + angular.cross(p - origin); }
   };
   void find_velocities();
@@ -47,8 +47,9 @@ class MMGRASP_EXPORT EdgeMotion {
   const Placement* placement_ = nullptr;
   Eigen::VectorXd step_, magnitude_;
   Eigen::VectorXd body_rates_, pair_rates_;  ///< Motion per piece.
-  Eigen::VectorXd half_squares_;             ///< Of the joints' motion in one piece; empty where nothing is known.
-  MotionRates along_edge_;                   ///< Where those of the plan are not finite.
+  Eigen::VectorXd
+      half_squares_;        ///< Half the square of each joint's motion in one piece; empty where nothing is known.
+  MotionRates along_edge_;  ///< Where those of the plan are not finite.
   const MotionRates* rates_ = nullptr;
   std::vector<Velocity> velocities_;
   bool velocities_valid_ = false;

@@ -39,7 +39,7 @@ class EdgeWalk {
   bool tables_clear(const Interval& interval) const;
   bool pairs_free(const Interval& interval, double reach);
 
-  Placement* placement_ = nullptr;  ///< Of the edge at hand.
+  Placement* placement_ = nullptr;  ///< Bodies of the edge at hand.
   CollisionSearch* search_ = nullptr;
   Eigen::VectorXd q0_, delta_, piece_, q_;
   long pieces_ = 0, placed_ = 0;  ///< `placed_`: the check placed last.

@@ -22,18 +22,18 @@ class MMGRASP_EXPORT MotionBounds {
   /// Bound on how fast any point within a sphere moves in the world, per unit of each column [m/rad or m/m], while no
   /// column exceeds `largest` in magnitude.
   Eigen::VectorXd point_rates(const FrameSphere& sphere, const Eigen::VectorXd& largest) const;
-  /// Bound on how fast the bodies within two spheres can close a clearance between them, likewise. Turning about a
-  /// joint between them closes it no faster than the nearer of the two can move: either may be taken for the one that
-  /// turns.
+  /// Bound on how fast the clearance between the bodies within two spheres can shrink, per unit of each column. A joint
+  /// between the two moves them against each other; whichever body is taken to stand still, the clearance shrinks at
+  /// the same rate, so for each joint the smaller of the two bodies' point rates is a bound.
   Eigen::VectorXd closing_rates(const FrameSphere& a, const FrameSphere& b, const Eigen::VectorXd& largest) const;
 
-  /// Turning about several joints at once bends the ways of points. Each of the two bounds how much: a column pair's
-  /// entry (order of squares()) times the magnitudes of both columns' motion per unit of time, summed, is a bound of
-  /// the acceleration of the points within a sphere while the columns move evenly [m/rad^2 and so on].
-  /// Meaningless where bends() is false.
+  /// When all columns move at constant rates, points on turning links still accelerate: they move along curves. This
+  /// and closing_bends() bound that acceleration. One entry for each pair of columns, in the order of squares(): each
+  /// entry times the rates of both columns, summed, bounds the acceleration of every point within the sphere
+  /// [m/rad^2 and so on]. Meaningless where bends() is false.
   Eigen::VectorXd point_bends(const FrameSphere& sphere, const Eigen::VectorXd& largest) const;
-  /// The same for one of the bodies within two spheres as seen from the other one, the gentler way round; `b_moves`:
-  /// seen from a.
+  /// The same for the motion of one of two bodies as seen from the other. Of the two views the one with the smaller
+  /// bound is returned; `b_moves` is set when it is b's motion seen from a.
   Eigen::VectorXd closing_bends(const FrameSphere& a, const FrameSphere& b, const Eigen::VectorXd& largest,
                                 bool& b_moves) const;
   /// False when a joint turns by a rotation vector, for which there are no such bounds.

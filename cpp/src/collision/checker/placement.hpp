@@ -56,7 +56,7 @@ class MMGRASP_EXPORT Placement {
     if (memory_.empty()) memory_.resize(snapshot_->shapes.size() * snapshot_->scene.size());
     return memory_[shape * snapshot_->scene.size() + scene_shape];
   }
-  /// By link, set by place_links().
+  /// Poses of the links in the world, one each, set by place_links().
   const Poses& links() const { return frames_; }
   const Eigen::Vector3d& shape_centre(int shape) const { return shape_centres_[shape]; }
 
@@ -68,7 +68,7 @@ class MMGRASP_EXPORT Placement {
   JointGroup group_;
 
   std::vector<double> q_;
-  Poses frames_;  ///< By frame number of the group's FrameTree, which for links is their index.
+  Poses frames_;  ///< One for each frame of the group's FrameTree; a link's frame number is the link's index.
   bool frames_valid_ = false;
   std::vector<float> sphere_numbers_;  ///< See spheres().
   int sphere_row_;                     ///< Spheres of the plan, rounded up to whole lanes.

@@ -67,7 +67,8 @@ bool AttachedChecker::edge_is_free(const Eigen::VectorXd& q0, const Eigen::Vecto
   return impl_->engine.is_free(q0) && impl_->engine.edge_stays_free(q0, q1, step);
 }
 
-bool AttachedChecker::way_is_free(const Eigen::VectorXd& q0, const Eigen::VectorXd& q1, const EdgeOptions& options) {
+bool AttachedChecker::edge_stays_free(const Eigen::VectorXd& q0, const Eigen::VectorXd& q1,
+                                      const EdgeOptions& options) {
   impl_->update_bounds();
   if (options.continuous) return advance_edge(impl_->engine, q0, q1, options.tolerance).free;
   const double step = edge_step(q1 - q0, impl_->motion_bounds, options.joint_step, options.workspace_step);

@@ -14,7 +14,7 @@ namespace mmgrasp::detail {
 struct Closing {
   double most = 0;
   bool directed = false;
-  bool first_moves = false;  ///< Of the two bodies; the other one stands still.
+  bool first_moves = false;  ///< Whether the first of the two bodies moves; the other one stands still.
   Eigen::Vector3d centre = Eigen::Vector3d::Zero(), shift = Eigen::Vector3d::Zero(), turn = Eigen::Vector3d::Zero();
   double radius = 0, bend = 0;
 

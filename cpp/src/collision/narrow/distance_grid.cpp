@@ -116,7 +116,7 @@ DistanceGrid::DistanceGrid(const std::vector<Eigen::Vector3d>& centres, double r
       for (int j = first[1]; j <= last[1]; ++j) {
         for (int k = first[2]; k <= last[2]; ++k) {
           std::int8_t& cell = cells_[index(i, j, k)];
-          if (cell != kInside) cell = aligned ? kInside : kNear;
+          if (cell != kSolidCell) cell = aligned ? kSolidCell : kSurfaceCell;
         }
       }
     }
@@ -171,7 +171,7 @@ void DistanceGrid::mark(const Eigen::Vector3d& a, const Eigen::Vector3d& b, cons
       for (int k = first[2]; k <= last[2]; ++k) {
         const Eigen::Vector3d middle(i + 0.5, j + 0.5, k + 0.5);
         if (std::abs(n.dot(middle - p[0])) > reach || outside_edges(middle)) continue;
-        cells_[index(i, j, k)] = kNear;
+        cells_[index(i, j, k)] = kSurfaceCell;
       }
     }
   }
@@ -194,7 +194,7 @@ void DistanceGrid::fill(const Solid& solid) {
           next[axis] += side;
           if (next[axis] < 0 || next[axis] >= count_[axis]) continue;
           const std::size_t n = index(next[0], next[1], next[2]);
-          if (seen[n] || cells_[n] == kNear) continue;
+          if (seen[n] || cells_[n] == kSurfaceCell) continue;
           seen[n] = 1;
           stack.push_back(next);
         }
@@ -206,9 +206,9 @@ void DistanceGrid::fill(const Solid& solid) {
     for (int j = 0; j < count_[1]; ++j) {
       for (int k = 0; k < count_[2]; ++k) {
         const std::size_t n = index(i, j, k);
-        if (seen[n] || cells_[n] == kNear) continue;
+        if (seen[n] || cells_[n] == kSurfaceCell) continue;
         const Eigen::Vector3d middle = low_ + step_ * Eigen::Vector3d(i + 0.5, j + 0.5, k + 0.5);
-        flood(i, j, k, solid.contains(middle) ? kInside : kNear);
+        flood(i, j, k, solid.contains(middle) ? kSolidCell : kSurfaceCell);
       }
     }
   }

@@ -38,15 +38,16 @@ class MMGRASP_EXPORT DistanceGrid {
   float extent() const { return extent_; }
 
  private:
-  enum Cell : std::int8_t { kInside = -1, kNear = 0 };  ///< Else: distance in quanta.
+  /// What a cell holds: one of these, or its distance from the body in quanta.
+  enum Cell : std::int8_t { kSolidCell = -1, kSurfaceCell = 0 };
 
   void lay_out(const Eigen::AlignedBox3d& body, const Eigen::Vector3d& low, double step,
                const std::array<int, 3>& count, int quanta_per_cell);
   std::size_t index(int i, int j, int k) const { return (static_cast<std::size_t>(i) * count_[1] + j) * count_[2] + k; }
-  /// Cells that the triangle may touch become kNear.
+  /// Cells that the triangle may touch become kSurfaceCell.
   void mark(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c);
-  /// Cells that cannot be reached from outside without crossing kNear become kNear, or kInside where they lie inside
-  /// the solid.
+  /// Cells that cannot be reached from outside without crossing kSurfaceCell become kSurfaceCell, or kSolidCell where
+  /// they lie inside the solid.
   void fill(const Solid& solid);
   /// Distance of the centres of kFree cells to the mesh where that is at most `band`; infinite elsewhere [m].
   std::vector<float> centre_distances(const TriangleMesh& mesh, double band) const;

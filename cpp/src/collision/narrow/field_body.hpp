@@ -43,7 +43,7 @@ class FieldBody {
   void build();
 
   const Solid& solid_;
-  std::vector<Piece> pieces_;  ///< In the order of `tree_`; empty where the solid's own tree serves.
+  std::vector<Piece> pieces_;  ///< Ordered as in `tree_`; empty where the solid's own tree serves.
   BoxTree tree_;
   std::vector<Eigen::Vector3d> corners_;
   Eigen::Vector3d middle_ = Eigen::Vector3d::Zero();

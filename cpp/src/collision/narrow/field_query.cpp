@@ -46,9 +46,9 @@ struct Region {
   Region() { corners.fill(Vector3d::Zero()); }
   double lower = -kInfinity;  ///< No value in it is below this.
   Kind kind = Kind::node;
-  int node = 0, count = 0;          ///< Of the tree; corners of a simplex.
-  std::array<Vector3d, 4> corners;  ///< Of a simplex, in the body's frame.
-  Eigen::AlignedBox3d box;          ///< Of the others, in the body's frame.
+  int node = 0, count = 0;          ///< Node of the tree; number of a simplex's corners.
+  std::array<Vector3d, 4> corners;  ///< Corners of a simplex, in the body's frame.
+  Eigen::AlignedBox3d box;          ///< Box of what is no simplex, in the body's frame.
   bool operator<(const Region& other) const { return lower > other.lower; }
 };
 

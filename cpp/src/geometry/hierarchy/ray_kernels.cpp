@@ -1,6 +1,7 @@
 #include "geometry/hierarchy/ray_kernels.hpp"
 
 #include "mmgrasp/core/detail/instruction_set.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
 
 // Compiled with -ffp-contract=off (CMakeLists.txt): a fused product would judge an edge otherwise than its neighbour
 // does, and the sets of instructions would differ.

@@ -37,7 +37,7 @@ struct TreePlace {
 };
 
 /// A ray cut to the tree's box, ready for the traversal.
-/// Of four numbers along the axes the last is filled up.
+/// Arrays of four hold numbers along x, y, z; the fourth only fills the lane.
 struct alignas(32) PreparedRay {
   double origin[4];
   long long near[4], far[4];    // places in TreeNode::bounds of the faces through which the ray enters and leaves

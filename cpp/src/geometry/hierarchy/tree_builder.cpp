@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kBins = 16;
 constexpr int kFew = 48;  // so few that every cut is tried
-// In the tree's coordinates, where the rounding of single precision is below 4e-7 for boxes and rays within them.
+// Given in the tree's coordinates, where the rounding of single precision is below 4e-7 for boxes and rays within them.
 constexpr double kMargin = 2e-6;
 constexpr int kDepthOfHalves = 24;  // deeper than that ranges are halved, which bounds the depth of any mesh's tree
 

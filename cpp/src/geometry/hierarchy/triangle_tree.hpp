@@ -25,7 +25,7 @@ class TriangleTree {
 
   /// Distance from the surface; infinite for an empty mesh.
   double distance(const Eigen::Vector3d& point) const { return nearest(point).distance; }
-  /// Of several triangles at the same distance the one with the least index.
+  /// The triangle nearest to a point; where several are equally near, the one with the least index.
   NearestTriangle nearest(const Eigen::Vector3d& point) const;
   /// As mesh_contains(): never inside an open mesh.
   bool contains(const Eigen::Vector3d& point) const;

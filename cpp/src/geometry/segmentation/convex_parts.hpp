@@ -8,7 +8,7 @@ namespace mmgrasp::detail {
 
 /// The hull of a region's points; flat or empty ones have no volume and no planes.
 struct RegionHull {
-  std::vector<Eigen::Vector3d> points;        ///< Of the hull; all points of a flat one.
+  std::vector<Eigen::Vector3d> points;        ///< Corners of the hull; all points of a flat one.
   std::vector<std::array<int, 3>> triangles;  ///< Into points.
   std::vector<Eigen::Vector4d> planes;        ///< Inside where normal . x <= w.
   double volume = 0;                          ///< [m^3]

@@ -11,7 +11,7 @@ namespace mmgrasp::detail {
 /// Two faces that share an edge.
 struct FaceBorder {
   int first = 0, second = 0;
-  double length = 0;  ///< Of the shared edge [m].
+  double length = 0;  ///< Length of the shared edge [m].
   double bend = 0;    ///< Angle between the normals [rad]; positive where the solid is convex, negative in a crease.
   std::array<int, 2> vertices{};
 };
@@ -24,7 +24,7 @@ struct FaceGraph {
   std::vector<int> parents;  ///< The face of the mesh that this one is a piece of.
   std::vector<FaceBorder> borders;
   std::vector<int> first_border, border_of;  ///< Borders of face f: border_of[first_border[f] .. first_border[f + 1]).
-  double area = 0;                           ///< Of all faces [m^2].
+  double area = 0;                           ///< Area of all faces [m^2].
 
   int size() const { return static_cast<int>(faces.size()); }
   int other(int border, int face) const {

@@ -11,7 +11,7 @@ struct GaussianMixture {
   struct Component {
     double share = 1, mean = 0, sigma = 1;
   };
-  std::vector<Component> components;  ///< By ascending mean.
+  std::vector<Component> components;  ///< Sorted by ascending mean.
   double log_likelihood = 0;          ///< Mean over the samples.
 
   /// log(share * density) of a component at x.

@@ -14,15 +14,16 @@ namespace {
 /// What the estimate of a volume may be wrong by, as a share of the joined hull.
 constexpr double kVolumeError = 0.004;
 
-/// Regions of which at least this share lies on the hull of both, no deeper than this share of the hull's size, join
-/// too: flat sides of one box have no volume of their own.
-constexpr double kOnHull = 0.95, kDepth = 0.005;
-/// Faces of a region that are asked for it.
-constexpr std::size_t kMostAsked = 300;
+/// Two regions also join when at least the share kMinShareOnHull of each lies on the hull of both: flat sides of one
+/// box have no volume of their own. A face lies on the hull when it is no deeper in it than kMaxHullDepth times the
+/// cube root of the hull's volume.
+constexpr double kMinShareOnHull = 0.95, kMaxHullDepth = 0.005;
+/// Most faces of a region whose depth is measured for that; they are spread over its area.
+constexpr std::size_t kMaxFacesMeasured = 300;
 
 struct Region {
   double area = 0;
-  std::vector<Eigen::Vector3d> middles;  ///< Of some of its faces, spread over its area.
+  std::vector<Eigen::Vector3d> middles;  ///< Middles of some of its faces, spread over its area.
   std::map<int, double> around;          ///< Length of the border with each neighbour [m].
   RegionHull hull;
   bool alive = true;
@@ -49,7 +50,7 @@ class RegionJoiner {
       region.area += graph.areas[f];
       if (region.area >= next[labels[f]]) {
         region.middles.push_back(graph.centres[f]);
-        next[labels[f]] += all[labels[f]] / kMostAsked;
+        next[labels[f]] += all[labels[f]] / kMaxFacesMeasured;
       }
       for (const int v : graph.faces[f]) vertices[labels[f]].push_back(v);
     }
@@ -141,12 +142,12 @@ class RegionJoiner {
     RegionHull hull;
     const double open = uncovered_volume(a.hull, b.hull, &hull);
     if (hull.volume <= 0) return kInfinity;
-    if (share_on(hull, a) >= kOnHull && share_on(hull, b) >= kOnHull) return -1;
+    if (share_on(hull, a) >= kMinShareOnHull && share_on(hull, b) >= kMinShareOnHull) return -1;
     return (open - convexity * std::min(a.hull.volume, b.hull.volume)) / hull.volume - kVolumeError;
   }
 
   static double share_on(const RegionHull& hull, const Region& region) {
-    const double depth = kDepth * std::cbrt(hull.volume);
+    const double depth = kMaxHullDepth * std::cbrt(hull.volume);
     std::size_t on = 0;
     for (const Eigen::Vector3d& x : region.middles) {
       on += std::any_of(hull.planes.begin(), hull.planes.end(),

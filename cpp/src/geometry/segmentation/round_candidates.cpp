@@ -24,7 +24,7 @@ constexpr int kSectors = 36;
 constexpr double kLeastTurn = 0.5, kLeastSphere = 0.25, kLeastShare = 0.05;
 
 struct Cover {
-  double area = 0;       ///< Of the faces that lie on the model and face outwards.
+  double area = 0;       ///< Area of the faces that lie on the model and face outwards.
   double turn = 0;       ///< Share of the turn around the axis where there are some.
   double deviation = 0;  ///< Mean distance of their corners.
 };

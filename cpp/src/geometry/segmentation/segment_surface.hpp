@@ -11,7 +11,7 @@ namespace mmgrasp::detail {
 
 /// The faces of one segment, moved and scaled so that it is of size 1 around the origin.
 struct SegmentSurface {
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< In the mesh [m].
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< Place of the surface's origin in the mesh [m].
   double scale = 1;                                  ///< Metres of one unit.
   std::vector<std::array<Eigen::Vector3d, 3>> corners;
   std::vector<Eigen::Vector3d> face_normals;

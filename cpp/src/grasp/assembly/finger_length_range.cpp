@@ -19,7 +19,7 @@ using detail::kInfinity;
 using detail::kTwoPi;
 
 constexpr double kTouching = 1e-6;  // [m]
-constexpr int kPalmCorners = 96;    // Of the polygon around the palm; 0.05 % larger.
+constexpr int kPalmCorners = 96;    // Corners of the polygon around the palm; 0.05 % larger.
 constexpr int kMaxLooks = 1000000;
 
 /// A convex outline, endless along the approach.
@@ -74,7 +74,7 @@ class Column {
     return out;
   }
 
-  std::vector<HalfPlane> sides_;  // In turning order.
+  std::vector<HalfPlane> sides_;  // Sorted by angle.
 };
 
 /// A finger between `from` and `to` off the axis; number `i` of `grasp.fingers`.
@@ -165,7 +165,7 @@ class Range {
     }
   }
 
-  /// Of the passive subassembly from the tool's way.
+  /// Largest distance of the passive subassembly from the tool's way.
   double farthest() const {
     double out = 0;
     for (const PlacedMesh& part : operation_.passive) {

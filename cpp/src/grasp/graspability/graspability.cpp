@@ -77,7 +77,7 @@ class Evaluation {
     for (const int cell : detail::local_maxima(map, map_.nx, map_.ny, options_.min_distance / map_.resolution)) {
       Grasp grasp;
       HeightMapProvenance place;
-      std::vector<QualityPart> parts;
+      std::vector<QualityFactor> parts;
       ++result.counts.tried;
       switch (refiner_.refine(cell % map_.nx, cell / map_.nx, angle(item.orientation), openings_[item.opening], layer,
                               grasp, place, parts)) {

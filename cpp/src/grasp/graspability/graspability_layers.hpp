@@ -68,7 +68,7 @@ class Refiner {
     }
   }
   Refined refine(int ix, int iy, double angle, double opening, const TipLayer& layer, Grasp& grasp,
-                 HeightMapProvenance& place, std::vector<QualityPart>& parts) const;
+                 HeightMapProvenance& place, std::vector<QualityFactor>& parts) const;
 
  private:
   bool touches(const Eigen::Vector2d& middle, const Eigen::Vector2d& along, double u0, double u1, double v_half,

@@ -74,7 +74,7 @@ bool Refiner::hand_touches(const Vector2d& middle, const Vector2d& along, double
 }
 
 Refined Refiner::refine(int ix, int iy, double angle, double opening, const TipLayer& layer, Grasp& grasp,
-                        HeightMapProvenance& place, std::vector<QualityPart>& parts) const {
+                        HeightMapProvenance& place, std::vector<QualityFactor>& parts) const {
   const double tip = layer.tip_height;
   const Vector2d along(std::cos(angle), std::sin(angle)), across(-along.y(), along.x());
   const Vector2d start = map_.centre(ix, iy);

@@ -4,10 +4,10 @@
 
 namespace mmgrasp {
 
-void Grasp::set_quality(std::vector<QualityPart> by_name) {
-  parts = std::move(by_name);
+void Grasp::set_quality(std::vector<QualityFactor> factors) {
+  quality_factors = std::move(factors);
   quality = 1;
-  for (const QualityPart& part : parts) quality *= part.factor();
+  for (const QualityFactor& one : quality_factors) quality *= one.factor();
 }
 
 }  // namespace mmgrasp

@@ -125,7 +125,7 @@ class JointedHand final : public HandModel {
             "at least two that its closing groups move are needed");
   }
 
-  /// In the link's frame.
+  /// The finger's inner face, in the link's frame.
   FingerPad inner_face(int link, int group, const std::vector<double>& half) const {
     std::vector<double> closer = half;
     closer[group] -= kShareStep;

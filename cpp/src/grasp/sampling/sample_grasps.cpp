@@ -47,15 +47,15 @@ class Judge {
   }
 
   /// `tool` is the origin of the tool frame in the object's frame.
-  std::vector<QualityPart> operator()(const ContactPair& pair, const Eigen::Vector3d& approach,
-                                      const Eigen::Vector3d& tool) const {
+  std::vector<QualityFactor> operator()(const ContactPair& pair, const Eigen::Vector3d& approach,
+                                        const Eigen::Vector3d& tool) const {
     return {half("alignment", pair.alignment), half("centring", centring(pair)),
             half("support", support(pair, approach)), half("insertion", insertion(approach, tool)),
             half("clearance", clearance(pair.width))};
   }
 
  private:
-  static QualityPart half(const char* name, double share) { return {name, std::clamp(share, 0.0, 1.0), 0.5}; }
+  static QualityFactor half(const char* name, double share) { return {name, std::clamp(share, 0.0, 1.0), 0.5}; }
 
   /// 1 when the line of contact passes through the centre of mass (no moment from gravity), 0 at the object's radius.
   double centring(const ContactPair& pair) const {

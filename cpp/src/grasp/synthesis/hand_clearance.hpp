@@ -36,7 +36,7 @@ class MMGRASP_EXPORT HandClearance {
   double margin_, largest_ = 0;  ///< Largest radius.
   std::optional<double> table_;
   PointGrid grid_;
-  std::vector<BoundingSphere> spheres_;  ///< In the grid's order.
+  std::vector<BoundingSphere> spheres_;  ///< Ordered as in the grid.
 };
 
 }  // namespace mmgrasp::detail

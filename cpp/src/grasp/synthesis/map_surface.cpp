@@ -22,7 +22,7 @@ constexpr double kNormalRadius = 0.006;    // over which normals are averaged [m
 constexpr int kLeastPiece = 50;            // vertices of the smallest body
 constexpr std::size_t kLeastPoints = 10;   // fewer are no surface that a pad could meet
 
-/// Of the blocks above the table and, where the object's box is given, within a hand's reach of it.
+/// Mesh of the blocks above the table and, where the object's box is given, within a hand's reach of it.
 SdfMesh surface_of(const ProbabilisticSdf& map, const SynthesisOptions& options) {
   if (!options.table && !options.object) return map.mesh();
   Eigen::AlignedBox3d within = map.bounds();

@@ -26,7 +26,7 @@ class MMGRASP_EXPORT MapSurface {
   std::vector<Eigen::Vector3d> scene;  ///< The object's points among them.
   std::vector<double> scene_sigma;     ///< [m]
   ObjectExtent extent;
-  double diagonal = 0;  ///< Of the axis-aligned box of the object's points [m].
+  double diagonal = 0;  ///< Diagonal of the axis-aligned box of the object's points [m].
 
  private:
   std::optional<PointGrid> grid_;

@@ -111,8 +111,9 @@ class CellStates {
     return any;
   }
 
-  /// In front of what moved away voxels with a small positive mean stay. One that more frames looked through than saw
-  /// tells of a surface only beside a voxel nearer to it, or behind it, that they did not look through.
+  /// Voxels with a small positive mean stay in front of what moved away. Where more frames looked through a voxel
+  /// than saw something in it, it belongs to a surface only beside a voxel nearer to that surface, or behind it, that
+  /// they did not look through; others are dropped.
   static void drop_ghosts(std::vector<Corner>& voxels) {
     for (int z = -1; z <= kBlockSide + 1; ++z) {
       for (int y = -1; y <= kBlockSide + 1; ++y) {

@@ -340,7 +340,7 @@ class PlaneFitter {
     return misfit / (rim * rim * rim * rim);
   }
 
-  /// Of the plane's distance: displacement d and rotation r move the point p by d + r x p.
+  /// Variance of the plane's distance: displacement d and rotation r move the point p by d + r x p.
   float pose_variance(const Vector3f& normal, const Vector3f& p) const {
     const float x = p.y() * normal.z() - p.z() * normal.y(), y = p.z() * normal.x() - p.x() * normal.z(),
                 z = p.x() * normal.y() - p.y() * normal.x();

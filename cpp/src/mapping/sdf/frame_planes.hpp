@@ -19,7 +19,7 @@ struct FramePlanes {
   std::vector<PixelShare> shares;  ///< Empty: all errors are the pixels' own.
   std::vector<BandDepths> bands;
   IntegrationReport report;  ///< Counts of pixels.
-  double median_depth = 0;   ///< Of what was measured in range [m].
+  double median_depth = 0;   ///< Median of the depths measured in range [m].
 };
 
 /// `image` has been cleaned and checked.

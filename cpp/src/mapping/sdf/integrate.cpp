@@ -319,8 +319,8 @@ class FrameIntegration {
     return true;
   }
 
-  /// Of how many neighbours along an axis both voxels project into the same pixel: their errors are the same there and
-  /// independent elsewhere.
+  /// Share of the voxels that project into the same pixel as their neighbour along an axis: the errors are the same
+  /// there and independent elsewhere.
   double shared_pixels(const KernelFrame& kernel, const BlockKey& key, int axis) const {
     Vector3d centre = first_voxel(key);
     for (int k = 0; k < 3; ++k) {

@@ -30,7 +30,7 @@ struct KernelFrame {
   int width = 0, height = 0;
   float fx = 0, fy = 0, cx = 0, cy = 0;  ///< cx, cy with 0.5 added: pixel = floor of the projection.
   float nearest = 0;                     ///< [m]
-  float step[3][3] = {};                 ///< Of a voxel along the map's axis [k], in the camera's frame [m].
+  float step[3][3] = {};                 ///< Step of one voxel along the map's axis [k], in the camera's frame [m].
 };
 
 struct KernelBlock {

@@ -117,7 +117,7 @@ struct SdfGrid {
 
   KeyTable table;
   std::vector<BlockKey> keys;
-  Eigen::AlignedBox3d bounds;  ///< Of all voxels [m]; for rays, however few at a time.
+  Eigen::AlignedBox3d bounds;  ///< Box around all voxels [m]; for rays, however few at a time.
   std::vector<std::vector<std::unique_ptr<VoxelBlock>>> layers;  ///< [layer][block]; null where it saw nothing.
   /// Correlation of the errors of neighbouring voxels along x, y, z, over all layers.
   std::vector<std::array<float, 3>> correlation;

@@ -31,7 +31,7 @@ class SdfSampler {
   explicit SdfSampler(const SdfGrid& grid)
       : grid_(grid), scale_(1 / grid.options.voxel), voxel_(static_cast<float>(grid.options.voxel)) {}
 
-  /// By weights 1 / variance over the layers.
+  /// The layers' values at a voxel, averaged with weights 1 / variance.
   Node node(int block, int voxel) const {
     Node out;
     bool looked_through = false;
@@ -137,7 +137,7 @@ class SdfSampler {
     return interpolate(corner, t, block >= 0 ? grid_.correlation[block] : std::array<float, 3>{1, 1, 1});
   }
 
-  /// Of values at a cell's corners at a place from (0, 0, 0) to (1, 1, 1) in it.
+  /// Interpolates the values at a cell's corners to a place in it, from (0, 0, 0) to (1, 1, 1).
   static float trilinear(const float* v, const float* t) {
     const float a = v[0] + t[0] * (v[1] - v[0]), b = v[2] + t[0] * (v[3] - v[2]), c = v[4] + t[0] * (v[5] - v[4]),
                 d = v[6] + t[0] * (v[7] - v[6]);
@@ -262,7 +262,7 @@ class SdfSampler {
     return true;
   }
 
-  /// Of a corner that was only looked through a lower bound is known; the distance grows no faster than the way from
+  /// Gives corners that were only looked through a lower bound: the distance grows no faster than the way from
   /// the nearest corner whose distance is known.
   void bound_free_corners(Node* corner) const {
     static const float kWay[4] = {0, 1, std::sqrt(2.0f), std::sqrt(3.0f)};

@@ -160,7 +160,7 @@ class ObjectSegmenter {
   std::vector<int> measured_, above_;
   Pose T_plane_world_ = Pose::Identity();
   bool is_given_ = false;
-  /// Of the surface of the plane that was found, in its frame. A given plane has no end.
+  /// Hull of the found plane's surface, in the plane's frame. A given plane has no end.
   std::vector<Vector2d> hull_;
   Vector2d middle_ = Vector2d::Zero();
   ObjectSegmentation out_;

@@ -67,7 +67,7 @@ class NormalFitter {
   }
 
  private:
-  /// Of the cells in the window that hang together with the one in the middle.
+  /// Plane through the cells in the window that hang together with the one in the middle.
   LocalPlane plane_around(int middle) {
     const Vector3d origin = cells_.position[middle];
     Moments window;

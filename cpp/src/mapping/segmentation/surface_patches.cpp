@@ -37,7 +37,7 @@ class PatchGrower {
   }
 
  private:
-  /// In each cube of edge `spacing` the cell nearest to the mean of the cube's cells.
+  /// The cell nearest to the mean of the cells in each cube of edge `spacing`.
   std::vector<int> seeds() const {
     const SurfaceCells cubes = surface_cells(cells_.position, spacing_);
     std::vector<int> nearest(cubes.size(), -1);

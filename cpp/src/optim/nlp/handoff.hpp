@@ -11,7 +11,7 @@ namespace mmgrasp::detail {
 /// The caller may leave while the solver computes: the solver then ends at its next callback.
 class Handoff {
  public:
-  /// By the solver: the caller runs `work` meanwhile. False, and nothing was run: the caller has left.
+  /// Called by the solver: has the caller run `work` meanwhile. False, and nothing was run: the caller has left.
   bool ask(const std::function<void()>& work) {
     std::unique_lock lock(mutex_);
     work_ = &work;
@@ -24,8 +24,8 @@ class Handoff {
     finished_ = true;
     changed_.notify_all();
   }
-  /// By the caller: runs what it is asked until the solver has finished (true), or `over` is true while it computes
-  /// (false).
+  /// Called by the caller: runs what it is asked until the solver has finished (true), or `over` is true while it
+  /// computes (false).
   bool serve(const std::function<bool()>& over) {
     std::unique_lock lock(mutex_);
     while (!finished_) {

@@ -11,7 +11,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr int kSteps = 8;
-constexpr double kDamping = 1e-13;  // Of the largest entry: rows may repeat each other.
+constexpr double kDamping = 1e-13;  // Share of the largest entry: rows may repeat each other.
 constexpr double kAtBound = 1e-4;   // Constraints this near to a bound are kept where they are.
 
 /// A place on the way, with its constraints.

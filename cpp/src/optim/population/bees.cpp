@@ -8,7 +8,7 @@ namespace {
 
 struct Site {
   SearchPoint point;
-  double size = 0;  ///< Of its neighbourhood.
+  double size = 0;  ///< Size of its neighbourhood.
   int without_progress = 0;
 };
 

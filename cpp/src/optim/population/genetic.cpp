@@ -22,12 +22,10 @@ class Genetic : public PopulationSearch {
       if (run.rng.uniform() >= run.options.mutation_rate) continue;
       const SearchVariable& v = run.variables()[i];
       if (run.discrete(i)) {
-        const double last = x(i);
-        x(i) = run.draw(x, i);
-        if (v.upper - v.lower == 1) x(i) = v.lower + v.upper - last;  // P2 flips what has two values
+        x(i) = v.upper - v.lower == 1 ? v.lower + v.upper - x(i) : run.draw(x, i);  // P2 flips what has two values
         continue;
       }
-      const double reach = run.options.mutation_size * (v.upper - v.lower);
+      const double reach = v.mutation > 0 ? v.mutation : run.options.mutation_size * (v.upper - v.lower);
       x(i) = run.rng.uniform(std::max(v.lower, x(i) - reach), std::min(run.upper(x, i), x(i) + reach));
     }
   }

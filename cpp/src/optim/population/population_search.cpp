@@ -34,6 +34,8 @@ void PopulationProblem::check() const {
             "bounds must be finite, lower = " + std::to_string(v.lower) + " not above upper");
     const bool whole = std::floor(v.lower) == v.lower && std::floor(v.upper) == v.upper;
     require(v.kind == SearchVariable::Kind::real || whole, field + ".lower", v.lower, "bounds must be whole numbers");
+    require(std::isfinite(v.mutation) && v.mutation >= 0, field + ".mutation", v.mutation,
+            "must be positive, or zero for a share of the range");
   }
 }
 

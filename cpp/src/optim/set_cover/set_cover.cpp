@@ -174,7 +174,8 @@ class Solver {
     return answer;
   }
 
-  /// Of a cover and one from the sets that could be part of a cheaper one, whose bound holds for cheaper covers only.
+  /// The better of a cover and one made of the sets that could be part of a cheaper one, whose bound holds for cheaper
+  /// covers only.
   static Answer better(const SetCoverProblem& problem, const Answer& known, const Answer& inner) {
     const double known_cost = cost_of(problem, known.chosen), inner_cost = cost_of(problem, inner.chosen);
     Answer best = inner_cost < known_cost ? inner : known;

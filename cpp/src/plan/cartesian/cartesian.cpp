@@ -140,7 +140,7 @@ class BranchSearch {
   /// A configuration at the first pose.
   struct Start {
     Eigen::VectorXd q;
-    int branch;  ///< Of inverse kinematics; -1: `near` itself.
+    int branch;  ///< Branch of inverse kinematics; -1: `near` itself.
     int turn;    ///< Which of the branch's turns, the nearest first.
   };
   std::vector<Start> starts_;

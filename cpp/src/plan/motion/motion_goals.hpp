@@ -11,7 +11,7 @@ namespace mmgrasp::detail {
 struct GoalConfiguration {
   Eigen::VectorXd q;
   int goal = -1;
-  bool turned = false;  ///< By a whole turn from another one of the same pose that is nearer to the start.
+  bool turned = false;  ///< A whole turn away from another one of the same pose that is nearer to the start.
 };
 
 /// The allowed configurations among the goals and those that inverse kinematics finds for their poses, the latter in

@@ -15,7 +15,8 @@ namespace {
 constexpr double kRangeShare = 0.05;
 constexpr double kAnywhereProbability = 0.1;  // Chance to sample from the whole bounds, not near the ends.
 constexpr double kSameConfiguration = 1e-9;   // Nearer configurations are the same [rad or m].
-constexpr double kLeastProgress = 0.05;       // Of a projected step towards its target, by the step's length.
+constexpr double kLeastProgress =
+    0.05;  // Least approach of a projected step to its target, as a share of the step's length.
 
 enum class Growth { trapped, advanced, reached };
 

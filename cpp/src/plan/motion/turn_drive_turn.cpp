@@ -29,7 +29,7 @@ void append_turn_drive_turn(const Eigen::VectorXd& from, const Eigen::VectorXd& 
     corners.back()[2] = in_turn_of(to[2], from[2] + turn(from[2], to[2]));
     return;
   }
-  // In [0, pi), so that both directions of travel see the same two headings in the same order.
+  // Brought to [0, pi), so that both directions of travel see the same two headings in the same order.
   double heading = std::atan2(motion[1], motion[0]);
   if (heading < 0) heading += kPi;
   if (heading >= kPi) heading -= kPi;

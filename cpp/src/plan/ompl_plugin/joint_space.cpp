@@ -48,7 +48,8 @@ class SeededSampler : public ob::StateSampler {
   }
 
  private:
-  /// In a box around the start or a goal, of any size down to kLeastBoxShare: all orders of magnitude equally likely.
+  /// Samples a box around the start or a goal, of any size down to kLeastBoxShare: all orders of magnitude equally
+  /// likely.
   void sample_around_end(ob::State* state) {
     const MmgraspOmplProblem& problem = context_->problem();
     const int goal = static_cast<int>(uniform() * 2 * problem.goal_count) - problem.goal_count;

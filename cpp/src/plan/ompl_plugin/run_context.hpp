@@ -43,7 +43,7 @@ class RunContext {
     return !stopped() && problem_.edge_is_free(problem_.user, q0, q1) != 0;
   }
 
-  /// By the caller or the time limit.
+  /// Whether the caller or the time limit ended the run.
   bool stopped() const { return problem_.stopped(problem_.user) != 0 || time_limit_.expired(); }
 
   /// The termination condition: called by planners once per round or more often.

@@ -16,7 +16,7 @@ namespace mmgrasp {
 namespace {
 
 constexpr int kLeafSize = 12;
-constexpr double kConnectedShare = 0.99;  // Of all vertices, in the largest component.
+constexpr double kConnectedShare = 0.99;  // Share of all vertices in the largest component.
 
 }  // namespace
 

@@ -14,7 +14,8 @@ namespace {
 constexpr double kJump = 0.004;          // Acceleration jumps above this part of a limit get a sample of their own.
 constexpr double kSmallestGap = 1e-5;    // Least time between samples at jumps [s].
 constexpr double kSmallestSplit = 2e-4;  // Shorter intervals are not halved [s].
-constexpr double kUntold = 0.5;  // Part of a limit by which a mean acceleration may lie beyond those at both ends.
+// Part of a limit by which the mean acceleration between two samples may lie beyond the accelerations at both.
+constexpr double kMaxMeanBeyondEnds = 0.5;
 
 using State = PathTiming::State;
 
@@ -71,7 +72,7 @@ class Sampler {
       const double mean = (b.state.velocity[j] - a.state.velocity[j]) / (b.time - a.time);
       const double first = a.state.acceleration[j], second = b.state.acceleration[j];
       const double beyond = std::max(mean - std::max(first, second), std::min(first, second) - mean);
-      if (beyond > kUntold * acceleration_limits_[j]) return true;
+      if (beyond > kMaxMeanBeyondEnds * acceleration_limits_[j]) return true;
     }
     return false;
   }

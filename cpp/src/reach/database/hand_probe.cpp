@@ -12,7 +12,7 @@ namespace {
 /// Links whose pose in `frame` (a link, or the world for -1) is the same whatever the configuration.
 std::vector<int> still_links(const JointGroup& arm, int frame) {
   constexpr int kTries = 4;
-  constexpr double kSame = 1e-9;
+  constexpr double kPoseTolerance = 1e-9;  // relative difference of poses that count as the same
   Rng rng(1);
   std::vector<Poses> tries(kTries);
   for (Poses& poses : tries) arm.link_poses(rng.uniform(arm.sample_lower(), arm.sample_upper()), poses);
@@ -22,7 +22,7 @@ std::vector<int> still_links(const JointGroup& arm, int frame) {
   std::vector<int> still;
   for (std::size_t link = 0; link < tries[0].size(); ++link) {
     bool same = true;
-    for (const Poses& poses : tries) same = same && seen(poses, link).isApprox(seen(tries[0], link), kSame);
+    for (const Poses& poses : tries) same = same && seen(poses, link).isApprox(seen(tries[0], link), kPoseTolerance);
     if (same) still.push_back(static_cast<int>(link));
   }
   return still;

@@ -36,7 +36,7 @@ struct StoredPose {
 
   StoredPose() = default;
   StoredPose(const Pose& T, const CellIndex& cell, double edge);
-  /// In cells from the lower corner of the cell.
+  /// The position in cells, from the lower corner of the cell.
   Eigen::Vector3f place() const {
     constexpr float kScale = 1.0f / 65536;
     return Eigen::Vector3f(position[0] + 0.5f, position[1] + 0.5f, position[2] + 0.5f) * kScale;

@@ -65,7 +65,7 @@ class ShardSampler {
   Matrix6Xd J_;
   Eigen::VectorXd one_;
 
-  // Of a shard, in the order of sampling.
+  // What a shard holds, in the order of sampling.
   std::vector<std::uint64_t> keys_;
   std::vector<std::uint32_t> rotation_ids_;
   std::vector<std::uint16_t> kept_;

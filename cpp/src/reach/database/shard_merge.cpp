@@ -14,7 +14,7 @@ constexpr std::uint64_t kPartRecords = 1 << 18;
 /// So many of a cell are spread over the joints' ranges, the rest follows as drawn: the cost grows with the cell only.
 constexpr std::size_t kSpread = 16;
 
-/// By `cell`, keeping the order of equal ones: least digits first, eleven bits at a time.
+/// Sorts by `cell`, keeping the order of equal ones: least digits first, eleven bits at a time.
 template <class Record>
 void sort_by_cell(std::vector<Record>& records, std::vector<Record>& spare, std::uint64_t cells) {
   constexpr int kBits = 11;

@@ -16,7 +16,7 @@
 namespace mmgrasp::detail {
 namespace {
 
-/// In front of a shard's arrays: position keys, counts, rotation ids, configurations.
+/// Stands in front of a shard's arrays: position keys, counts, rotation ids, configurations.
 struct ShardHeader {
   char magic[8];
   char key[16];

@@ -32,7 +32,7 @@ std::string short_number(double value) {
 
 }  // namespace
 
-/// In the form that the kinematics kernels read.
+/// The arm in the form that the kinematics kernels read.
 struct StoredArm::Tables {
   std::vector<Segment> segments;
   Angles angles;

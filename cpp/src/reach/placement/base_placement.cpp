@@ -251,7 +251,7 @@ class PlacementSearch {
 
   BasePlacement run() {
     const std::vector<Eigen::Vector3d> bases = voted();
-    // In pieces, so that what the first ones reach ends the look at the others early.
+    // Bases are examined in groups, so that what the first ones reach ends the look at the others early.
     constexpr std::size_t kPiece = 4;
     for (std::size_t i = 0; i < bases.size() && !monitor_.stopped(); i += kPiece) {
       look_at({bases.begin() + static_cast<std::ptrdiff_t>(i),

@@ -205,7 +205,7 @@ IkResult solve_ik(const JointGroup& group, const Pose& T_world_tip, const Eigen:
       result.outcome = monitor.stopped() ? Outcome::stopped : Outcome::timeout;
       return result;
     }
-    // In a singularity the closed form keeps one of infinitely many splits: descents may still find another.
+    // A singular pose leaves the closed form one of infinitely many splits: descents may still find another.
     if (attempt == descents_before_closed_form && search.closed_form()) return result;
     if (attempt <= options.restarts && search.descent(attempt == 0 ? seed : starts.next())) return result;
   }

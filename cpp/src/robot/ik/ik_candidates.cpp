@@ -8,7 +8,7 @@
 namespace mmgrasp::detail {
 namespace {
 
-constexpr double kSame = 1e-4;  // [rad] Branches nearer than this are one: they have met in a singularity.
+constexpr double kSameBranch = 1e-4;  // Branches nearer than this are one, they met in a singularity [rad].
 
 /// Newton's method on the true chain, without limits: the closed form is exact for ideal geometry only.
 bool polish(const JointGroup& group, const Pose& T_world_tip, Eigen::VectorXd& q, IkWorkspace& workspace) {
@@ -60,11 +60,11 @@ void ClosedFormSolver::turn_inside(Eigen::VectorXd& q) const {
 bool ClosedFormSolver::known(std::size_t count) const {
   for (std::size_t i = 0; i < count; ++i) {
     double largest = 0;
-    for (Eigen::Index j = 0; j < q_.size() && largest < kSame; ++j) {
+    for (Eigen::Index j = 0; j < q_.size() && largest < kSameBranch; ++j) {
       const double difference = std::abs(q_[j] - kept_[i][j]);  // both within half a turn of the middle
       largest = std::max(largest, std::min(difference, std::abs(kTwoPi - difference)));
     }
-    if (largest < kSame) return true;
+    if (largest < kSameBranch) return true;
   }
   return false;
 }

@@ -92,7 +92,7 @@ MMGRASP_INLINE bool any(Lanes mask) {
   return sum != 0;
 }
 
-/// Of all angles of a table for one configuration.
+/// Sines and cosines of all angles of a table for one configuration.
 MMGRASP_INLINE void all_sines(const AngleTable& angles, const double* q, double* sines, double* cosines) {
   LaneBits large{};
   for (int i = 0; i < angles.count; i += MMGRASP_LANES) {

@@ -24,7 +24,7 @@ struct AlongZ {
 
 struct Path {
   std::vector<AlongZ> motions;
-  Rigid tip;  ///< In the frame after the last motion.
+  Rigid tip;  ///< Pose of the tip in the frame after the last motion.
 };
 
 /// The motions of the tree that move the tip, each frame turned so that its axis is z.

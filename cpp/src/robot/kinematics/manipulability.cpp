@@ -73,7 +73,7 @@ double JointGroup::manipulability(const Eigen::Ref<const Eigen::VectorXd>& q) co
 
 double velocity_manipulability(const JointGroup& group, const Eigen::VectorXd& q, const Eigen::VectorXd& direction) {
   const SmallVector z = unit(direction);
-  // Of the joint velocities y that move the tool with z the shortest has length (z^T (J J^T)^-1 z)^(1/2). With
+  // The shortest of the joint velocities y that move the tool with z has length (z^T (J J^T)^-1 z)^(1/2). With
   // J^T P = Q R the condition J y = z reads R^T (Q^T y) = P^T z: the first rows give Q^T y, the rest must agree.
   Eigen::ColPivHouseholderQR<Transposed> qr(jacobian_rows(group, q, z.size()));
   qr.setThreshold(kRankTolerance);

@@ -11,7 +11,8 @@
 namespace mmgrasp {
 namespace {
 
-constexpr double kJoin = 1e-6;  // [rad, m, rad/s, m/s]
+constexpr double kMaxStep =
+    1e-6;  // Largest step between the end of a motion and the next one's begin [rad, m, rad/s, m/s].
 
 void append_values(std::string& text, const double* values, Eigen::Index count) {
   for (Eigen::Index i = 0; i < count; ++i) {
@@ -25,7 +26,7 @@ template <typename V>
 void require_joined(const V& end, const V& begin, const std::string& what) {
   if (end.size() == 0) return;
   const double jump = (begin - end).cwiseAbs().maxCoeff();
-  require(jump <= kJoin, "next", jump, "must begin where the motion ends: " + what + " differ");
+  require(jump <= kMaxStep, "next", jump, "must begin where the motion ends: " + what + " differ");
 }
 
 }  // namespace
@@ -35,7 +36,7 @@ void RobotMotion::wait(double duration) {
   if (times.empty()) throw InvalidInput("wait: the motion has no points");
   const double speed = std::max(velocities.back().size() ? velocities.back().cwiseAbs().maxCoeff() : 0.0,
                                 base_twists.back().cwiseAbs().maxCoeff());
-  require(speed <= kJoin, "wait: speed at the end", speed, "must be 0");
+  require(speed <= kMaxStep, "wait: speed at the end", speed, "must be 0");
   if (duration == 0) return;
   times.push_back(times.back() + duration);
   positions.push_back(positions.back());

@@ -1,5 +1,6 @@
 #include "structure/bound/ik_enclosure.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <string>
 
@@ -14,7 +15,6 @@ using Eigen::Vector3d;
 
 constexpr double kSpecial = 1e-6;   // [m] and sine of the angle
 constexpr double kPolished = 2e-9;  // [m] and [rad]: how far a polished configuration may be from its pose
-constexpr double kLever = 4;        // [m] farther than any point of such an arm is from any of its axes
 
 bool are_parallel(const Screws& s, int i, int j) {
   return s.h[i].cross(s.h[j]).norm() < kSpecial;
@@ -34,6 +34,27 @@ double distance_to_axis(const Screws& s, int i, const Vector3d& x) {
   return (x - s.p[i]).cross(s.h[i]).norm();
 }
 
+/// Which of the two kinds an arm is.
+struct Geometry {
+  Vector3d meeting;  ///< Where axes 5 and 6 meet.
+  bool spherical = false;
+};
+
+/// Longer than the tip and the wrist are from any axis in any configuration: consecutive points are on one link.
+double longest_lever(const Screws& s, const Vector3d& wrist) {
+  double sum = std::max((s.tip.t - s.p[5]).norm(), (wrist - s.p[5]).norm());
+  for (int i = 0; i < 5; ++i) sum += (s.p[i + 1] - s.p[i]).norm();
+  return sum;
+}
+
+std::optional<Geometry> geometry_of(const Screws& s) {
+  const auto wrist = s.size == 6 ? meeting_point(s, 4, 5) : std::nullopt;
+  if (!wrist || !are_parallel(s, 1, 2) || are_parallel(s, 0, 1)) return std::nullopt;
+  const bool spherical = !are_parallel(s, 3, 4) && distance_to_axis(s, 3, *wrist) < kSpecial;
+  if (!spherical && !are_parallel(s, 1, 3)) return std::nullopt;
+  return Geometry{*wrist, spherical};
+}
+
 Vector3d across(const Vector3d& h) {
   Eigen::Index smallest;
   h.cwiseAbs().minCoeff(&smallest);
@@ -42,13 +63,14 @@ Vector3d across(const Vector3d& h) {
 
 }  // namespace
 
+bool IkEnclosure::takes(const JointGroup& group) {
+  return geometry_of(screws_of(group)).has_value();
+}
+
 IkEnclosure::IkEnclosure(const JointGroup& group) : group_(group) {
   const Screws s = screws_of(group);
-  const auto wrist = s.size == 6 ? meeting_point(s, 4, 5) : std::nullopt;
-  const bool parallel12 = wrist && are_parallel(s, 1, 2);
-  const bool level = parallel12 && !are_parallel(s, 0, 1);
-  spherical_ = level && !are_parallel(s, 3, 4) && distance_to_axis(s, 3, *wrist) < kSpecial;
-  require(level && (spherical_ || are_parallel(s, 1, 3)), "group", group.name(),
+  const auto geometry = geometry_of(s);
+  require(geometry.has_value(), "group", group.name(),
           "must be an arm of six turning joints without a base, whose axes 2 and 3 are parallel and either 4, 5 and 6 "
           "meet in a point or 4 is parallel, too, and 5 and 6 meet, all within 1e-6 m and rad: only for these bounds "
           "are proven (a population search takes any arm)");
@@ -56,14 +78,16 @@ IkEnclosure::IkEnclosure(const JointGroup& group) : group_(group) {
     h_[i] = s.h[i].normalized();
     p_[i] = s.p[i];
   }
-  meeting_ = *wrist;
+  meeting_ = geometry->meeting;
+  spherical_ = geometry->spherical;
   // A turn about an axis that is off by dh in direction and dp in place differs by at most 5 dh in rotation and moves
   // points by 5 dh times their distance and 2 dp.
   off_rotation_ = off_position_ = kPolished;
+  const double lever = longest_lever(s, meeting_);
   const auto snap = [&](int i, const Vector3d& h, const Vector3d& p) {
     const double dh = (h - h_[i]).norm(), dp = (p - p_[i]).cross(h_[i]).norm();
     off_rotation_ += 5 * dh;
-    off_position_ += 5 * dh * kLever + 2 * dp;
+    off_position_ += 5 * dh * lever + 2 * dp;
     h_[i] = h;
     p_[i] = p;
   };
@@ -108,13 +132,13 @@ LinearForm IkEnclosure::onto(const Vector3d& axis, const FormVector& u, const Fo
   return angle_of(dot(across_u, v), dot(u, v) - dot(axis, u) * dot(axis, v));
 }
 
-FormVector IkEnclosure::G_turned(const FormPose& T, const Vector3d& v) const {
+FormVector IkEnclosure::carried_direction(const FormPose& T, const Vector3d& v) const {
   FormVector out = T.turned(R_tip_.transpose() * v);
   for (LinearForm& x : out) x.error += off_rotation_ * v.norm();
   return out;
 }
 
-FormVector IkEnclosure::G_point(const FormPose& T, const Vector3d& x) const {
+FormVector IkEnclosure::carried_point(const FormPose& T, const Vector3d& x) const {
   const Vector3d arm = R_tip_.transpose() * (x - t_tip_);
   FormVector out = T.turned(arm) + T.origin;
   for (LinearForm& y : out) y.error += off_rotation_ * arm.norm() + off_position_;
@@ -123,7 +147,7 @@ FormVector IkEnclosure::G_point(const FormPose& T, const Vector3d& x) const {
 
 void IkEnclosure::spherical(const FormPose& T, std::vector<FormConfiguration>& out) const {
   const Vector3d w = meeting_, y = across(h_[5]);
-  const FormVector t = G_point(T, w), Gh = G_turned(T, h_[5]), Gy = G_turned(T, y);
+  const FormVector t = carried_point(T, w), h_now = carried_direction(T, h_[5]), y_now = carried_direction(T, y);
   const Vector3d from = w - p_[2], to = p_[1] - p_[2];
   for (const LinearForm& first : to_plane(h_[0], h_[1], t - form(p_[0]), LinearForm(h_[1].dot(w - p_[0])))) {
     const Turn one(first);  // joint 1 turns by -first
@@ -139,11 +163,11 @@ void IkEnclosure::spherical(const FormPose& T, std::vector<FormConfiguration>& o
         return turned(2, three, true, turned(1, two, true, turned(0, one, false, x)));
       };
       if (wrist_sign_ != 0) {
-        euler_wrist(back(G_turned(T, h_[4].cross(h_[3]))), back(G_turned(T, h_[4])), back(G_turned(T, h_[3])),
-                    {-first, second, third, {}, {}, {}, {}}, out);
+        euler_wrist(back(carried_direction(T, h_[4].cross(h_[3]))), back(carried_direction(T, h_[4])),
+                    back(carried_direction(T, h_[3])), {-first, second, third, {}, {}, {}, {}}, out);
         continue;
       }
-      const FormVector Rh = back(Gh), Ry = back(Gy);
+      const FormVector Rh = back(h_now), Ry = back(y_now);
       for (const LinearForm& fifth : to_plane(h_[4], h_[3], form(h_[5]), dot(h_[3], Rh))) {
         const Turn five(fifth);
         const LinearForm fourth = onto(h_[3], turned(4, five, false, form(h_[5])), Rh);
@@ -155,8 +179,9 @@ void IkEnclosure::spherical(const FormPose& T, std::vector<FormConfiguration>& o
   }
 }
 
-/// Of R = Rz(4) Ry(5) Rz(sign 6), whose columns are given, along z (axis 4), y (axis 5) and x = y x z. The entries tell
-/// each angle without going through the others, so errors do not pile up where the wrist is nearly stretched.
+/// Angles of R = Rz(4) Ry(5) Rz(sign 6), whose columns are given, along z (axis 4), y (axis 5) and x = y x z. The
+/// entries tell each angle without going through the others, so errors do not pile up where the wrist is nearly
+/// stretched.
 void IkEnclosure::euler_wrist(const FormVector& Rx, const FormVector& Ry, const FormVector& Rz,
                               const FormConfiguration& arm, std::vector<FormConfiguration>& out) const {
   const Vector3d z = h_[3], y = h_[4], x = y.cross(z);
@@ -181,22 +206,24 @@ void IkEnclosure::euler_wrist(const FormVector& Rx, const FormVector& Ry, const 
 void IkEnclosure::parallel(const FormPose& T, std::vector<FormConfiguration>& out) const {
   const Vector3d h = h_[1], o = meeting_, y = across(h);
   const Vector3d side = across(h_[5]), other = h_[5].cross(side);
-  const FormVector Go = G_point(T, o), Gh = G_turned(T, h_[5]), Gs = G_turned(T, side), Gt = G_turned(T, other);
+  const FormVector o_now = carried_point(T, o), h_now = carried_direction(T, h_[5]),
+                   side_now = carried_direction(T, side), other_now = carried_direction(T, other);
   const double sign3 = h_[2].dot(h) > 0 ? 1 : -1, sign4 = h_[3].dot(h) > 0 ? 1 : -1;
-  for (const LinearForm& first : to_plane(h_[0], h, Go - form(p_[0]), LinearForm(h.dot(o - p_[0])))) {
+  for (const LinearForm& first : to_plane(h_[0], h, o_now - form(p_[0]), LinearForm(h.dot(o - p_[0])))) {
     const Turn one(first);
-    const FormVector u = turned_point(0, one, false, Go), uh = turned(0, one, false, Gh);
+    const FormVector u = turned_point(0, one, false, o_now), uh = turned(0, one, false, h_now);
     const FormVector h_first = turned(0, one, true, form(h));
     for (const LinearForm& fifth : to_plane(h_[4], h, form(h_[5]), dot(h, uh))) {
       const Turn five(fifth);
       // R_6^T R_5^T h = G^T R_1 h; coordinates of the right side along h_5, side and other
-      const FormVector right =
-          dot(Gh, h_first) * form(h_[5]) + dot(Gs, h_first) * form(side) + dot(Gt, h_first) * form(other);
+      const FormVector right = dot(h_now, h_first) * form(h_[5]) + dot(side_now, h_first) * form(side) +
+                               dot(other_now, h_first) * form(other);
       const LinearForm sixth = -onto(h_[5], turned(4, five, true, form(h)), right);
       const Turn six(sixth);
       const FormVector inner = turned(5, six, true, turned(4, five, true, form(y)));
-      const FormVector G_inner = dot(h_[5], inner) * Gh + dot(side, inner) * Gs + dot(other, inner) * Gt;
-      const LinearForm sum = onto(h, form(y), turned(0, one, false, G_inner));
+      const FormVector inner_now =
+          dot(h_[5], inner) * h_now + dot(side, inner) * side_now + dot(other, inner) * other_now;
+      const LinearForm sum = onto(h, form(y), turned(0, one, false, inner_now));
       const Turn all(sum);
       const FormVector p4 = u + turned(1, all, false, form(p_[3] - o));
       const LinearForm reach2 = squared_norm(p4 - form(p_[1]));
@@ -269,8 +296,8 @@ std::array<LinearForm, 6> IkEnclosure::joint_effects(const FormConfiguration& q,
   }
   // Axis 6 is fixed in the tip; axes 5 and 6 meet, and 5 crosses 4 at a right angle or does not: what joint 5 does is
   // within what is left of the moment there.
-  const FormVector there = form(w) + cross(T.origin - G_point(T, meeting_), v);
-  effects[5] = dot(G_turned(T, h_[5]), there);
+  const FormVector there = form(w) + cross(T.origin - carried_point(T, meeting_), v);
+  effects[5] = dot(carried_direction(T, h_[5]), there);
   LinearForm rest = squared_norm(there);
   if (wrist_sign_ != 0) rest -= squared(effects[3]);
   const double most = std::sqrt(std::max(0.0, rest.high()));

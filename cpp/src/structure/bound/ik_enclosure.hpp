@@ -29,6 +29,8 @@ using FormConfiguration = std::array<LinearForm, 7>;
 /// whose axes 2, 3 and 4 are parallel and 5 and 6 meet.
 class MMGRASP_EXPORT IkEnclosure {
  public:
+  /// Whether a group has such a geometry.
+  static bool takes(const JointGroup& group);
   /// Throws InvalidInput for other groups; what an arm is off its special geometry (at most 1e-6) widens all answers.
   explicit IkEnclosure(const JointGroup& group);
 
@@ -44,26 +46,27 @@ class MMGRASP_EXPORT IkEnclosure {
 
  private:
   struct Turn {
-    LinearForm angle, c, s;
-    explicit Turn(const LinearForm& a) : angle(a), c(cosine(a)), s(sine(a)) {}
+    LinearForm c, s;
+    explicit Turn(const LinearForm& angle) : c(cosine(angle)), s(sine(angle)) {}
   };
   FormVector turned(int joint, const Turn& turn, bool back, const FormVector& v) const;
   FormVector turned_point(int joint, const Turn& turn, bool back, const FormVector& x) const;
   std::vector<LinearForm> to_plane(const Eigen::Vector3d& axis, const Eigen::Vector3d& k, const FormVector& u,
                                    const LinearForm& d) const;
   LinearForm onto(const Eigen::Vector3d& axis, const FormVector& u, const FormVector& v) const;
-  void spherical(const FormPose& G_tip, std::vector<FormConfiguration>& out) const;
+  void spherical(const FormPose& T_world_tip, std::vector<FormConfiguration>& out) const;
   void euler_wrist(const FormVector& Rx, const FormVector& Ry, const FormVector& Rz, const FormConfiguration& arm,
                    std::vector<FormConfiguration>& out) const;
-  void parallel(const FormPose& G_tip, std::vector<FormConfiguration>& out) const;
-  FormVector G_turned(const FormPose& T, const Eigen::Vector3d& v) const;
-  FormVector G_point(const FormPose& T, const Eigen::Vector3d& x) const;
+  void parallel(const FormPose& T_world_tip, std::vector<FormConfiguration>& out) const;
+  /// Where a direction, a point of the tip goes that is given where the tip stands at zero.
+  FormVector carried_direction(const FormPose& T, const Eigen::Vector3d& v) const;
+  FormVector carried_point(const FormPose& T, const Eigen::Vector3d& x) const;
 
   JointGroup group_;
   std::array<Eigen::Vector3d, 6> h_, p_;  ///< Axes at zero, snapped to the special geometry.
   Eigen::Matrix3d R_tip_;
   Eigen::Vector3d t_tip_;
-  Eigen::Vector3d meeting_;  ///< Of the wrist's axes (4, 5, 6; or 5, 6).
+  Eigen::Vector3d meeting_;  ///< Where the wrist's axes meet (4, 5, 6; or 5, 6).
   bool spherical_ = false;
   int wrist_sign_ = 0;
   double off_rotation_ = 0, off_position_ = 0;  ///< What snapping and polishing leave.

@@ -84,7 +84,7 @@ inline LinearForm sine(const LinearForm& a) {
   return composed(a, std::sin(a.centre), std::cos(a.centre), std::min(1.0, std::abs(std::sin(a.centre)) + r));
 }
 
-/// Of two enclosures of the same the one that leaves less open: a plain range has no slopes, and its width is all
+/// The one of two enclosures of the same value that leaves less open: a plain range has no slopes, and its width is all
 /// error.
 inline LinearForm sharper(const LinearForm& a, const LinearForm& range) {
   return a.error < range.error ? a : range;
@@ -163,9 +163,6 @@ inline FormVector cross(const FormVector& a, const FormVector& b) {
 }
 inline FormVector operator*(const LinearForm& k, const FormVector& a) {
   return {k * a[0], k * a[1], k * a[2]};
-}
-inline FormVector operator*(const Eigen::Matrix3d& m, const FormVector& a) {
-  return {dot(m.row(0), a), dot(m.row(1), a), dot(m.row(2), a)};
 }
 
 /// R(axis, angle) v with the angle's cosine and sine.

@@ -8,7 +8,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr int kInside = 3;  // places inside each other member
+constexpr int kPlacesPerMember = 3;  // places between the ends of each member that is not clamped
+constexpr double kFit = 1e-9;        // share of its size that an interpolated displacement may be off
 
 struct Place {
   int member;
@@ -25,7 +26,8 @@ std::vector<Place> places_of(const BeamFrame& frame, int clamped) {
       if (known[frame.members[m].nodes[end]]++) continue;
       places.push_back({m, end ? length : 0});
     }
-    for (int k = 1; m != clamped && k <= kInside; ++k) places.push_back({m, length * k / (kInside + 1)});
+    for (int k = 1; m != clamped && k <= kPlacesPerMember; ++k)
+      places.push_back({m, length * k / (kPlacesPerMember + 1)});
   }
   return places;
 }
@@ -64,7 +66,11 @@ SagBound::SagBound(const BeamFrame& frame, std::vector<Vector3d> gravity) : grav
       for (std::size_t k = 0; k < places.size(); ++k) values[k].col(i) = displacement(held, places[k]);
     }
     places_.emplace_back();
-    for (const auto& value : values) places_.back().push_back(value * fit.transpose());
+    off_.emplace_back();
+    for (const auto& value : values) {
+      places_.back().push_back(value * fit.transpose());
+      off_.back().push_back(kFit * value.norm() + 1e-15);
+    }
     // That it is a polynomial is proven on paper and tried here, between the places that it was made from.
     const double t = 0.37;
     Eigen::Matrix<double, kTerms, 1> at_t;
@@ -73,7 +79,7 @@ SagBound::SagBound(const BeamFrame& frame, std::vector<Vector3d> gravity) : grav
     for (std::size_t k = 0; k < places.size(); ++k) {
       const auto exact = displacement(held, places[k]);
       const double off = (places_.back()[k] * at_t - exact).norm();
-      if (off > 1e-7 * values[k].norm() + 1e-15)
+      if (off > off_.back()[k])
         throw Error("SagBound: displacements are no polynomial of the clamp; this is a fault of mmgrasp");
     }
   }
@@ -109,8 +115,11 @@ LinearForm SagBound::below(int member, double middle, double half) const {
     }
   }
   Eigen::Matrix<double, 1, kTerms> sum = Eigen::Matrix<double, 1, kTerms>::Zero();
+  double off = 0;
   for (std::size_t k = 0; k < places.size(); ++k) {
-    if (!weights[k].isZero(0)) sum += weights[k] * places[k];
+    if (weights[k].isZero(0)) continue;
+    sum += weights[k] * places[k];
+    off += weights[k].norm() * off_[member][k];
   }
   // Taylor's series about t by repeated synthetic division: exact, the terms beyond the first are the remainder.
   for (int from = 0; from + 1 < kTerms; ++from) {
@@ -118,8 +127,7 @@ LinearForm SagBound::below(int member, double middle, double half) const {
   }
   double remainder = 0, power = r;
   for (int p = 2; p < kTerms; ++p) remainder += std::abs(sum[p]) * (power *= r);
-  constexpr double kRounding = 1e-9;
-  return {sum[0], sum[1] * r, 0, remainder + kRounding * std::abs(sum[0])};
+  return {sum[0], sum[1] * r, 0, remainder + off};
 }
 
 }  // namespace mmgrasp::detail

@@ -24,7 +24,8 @@ class MMGRASP_EXPORT SagBound {
   static constexpr int kTerms = 9;
   using Powers = Eigen::Matrix<double, 12, kTerms>;  ///< Row 4 k + j: component k for gravity j (3: without gravity).
   /// Displacements of one place by powers of t, -1 at the member's first node and 1 at its second.
-  std::vector<std::vector<Powers>> places_;  ///< By member that is clamped.
+  std::vector<std::vector<Powers>> places_;  ///< One entry for each clamped member.
+  std::vector<std::vector<double>> off_;  ///< How far each polynomial may be off, by the size of what it was made from.
   std::vector<double> length_;
   std::vector<Eigen::Vector3d> gravity_;
 };

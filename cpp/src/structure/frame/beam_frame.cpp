@@ -1,21 +1,18 @@
 #include "mmgrasp/structure/beam_frame.hpp"
 
 #include <cmath>
-#include <numeric>
 #include <string>
 
 #include "mmgrasp/core/error.hpp"
 #include "structure/frame/beam_element.hpp"
+#include "structure/node_pieces.hpp"
 #include "structure/section_axes.hpp"
 
 namespace mmgrasp {
 namespace {
 
+using detail::entry;
 using Eigen::Vector3d;
-
-std::string entry(const char* list, std::size_t index) {
-  return std::string(list) + "[" + std::to_string(index) + "]";
-}
 
 /// Adds which entry broke a rule of a part. Texts are made only for what fails: searches check a frame for every grasp.
 template <typename Check>
@@ -25,11 +22,6 @@ void check_part(std::size_t member, const char* part, const Check& check) {
   } catch (const InvalidInput& error) {
     throw InvalidInput(entry("members", member) + "." + part + "." + error.what());
   }
-}
-
-int root(std::vector<int>& parent, int node) {
-  while (parent[node] != node) node = parent[node] = parent[parent[node]];
-  return node;
 }
 
 void check_members(const BeamFrame& frame) {
@@ -50,27 +42,18 @@ void check_members(const BeamFrame& frame) {
     }
     check_part(i, "section", [&] { member.section.check(); });
     check_part(i, "material", [&] { member.material.check(); });
+    if (member.material.stress_limit > 0 && !member.section.stresses_known()) {
+      require(
+          false, entry("members", i) + ".material.stress_limit", member.material.stress_limit,
+          "must be zero for a section whose y_extent, z_extent or torsion_modulus is not given: its stresses are not "
+          "known");
+    }
     const Vector3d& y = member.y_towards;
     const Vector3d x = (frame.nodes[b] - frame.nodes[a]).normalized();
     if (y.allFinite() && (y.isZero(0) || x.cross(y).norm() > 1e-6 * y.norm())) continue;
     require(false, entry("members", i) + ".y_towards",
             "(" + std::to_string(y.x()) + ", " + std::to_string(y.y()) + ", " + std::to_string(y.z()) + ")",
             "must be a direction that does not run along the member, or zero");
-  }
-}
-
-void check_connected(const BeamFrame& frame) {
-  std::vector<int> parent(frame.nodes.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  std::vector<bool> used(frame.nodes.size(), false);
-  for (const BeamMember& member : frame.members) {
-    parent[root(parent, member.nodes[0])] = root(parent, member.nodes[1]);
-    used[member.nodes[0]] = used[member.nodes[1]] = true;
-  }
-  for (std::size_t i = 0; i < frame.nodes.size(); ++i) {
-    if (used[i] && root(parent, static_cast<int>(i)) == root(parent, 0)) continue;
-    require(used[i], entry("nodes", i), "of no member", "every node must belong to a member");
-    require(false, entry("nodes", i), "not connected to nodes[0]", "a frame is one connected piece");
   }
 }
 
@@ -82,7 +65,9 @@ void BeamFrame::check() const {
     if (!nodes[i].allFinite()) require(false, entry("nodes", i), "not finite", "must be three finite numbers [m]");
   }
   check_members(*this);
-  check_connected(*this);
+  std::vector<std::array<int, 2>> ends;
+  for (const BeamMember& member : members) ends.push_back(member.nodes);
+  detail::check_one_piece(nodes.size(), ends, "member", "frame");
   for (std::size_t i = 0; i < loads.size(); ++i) {
     const NodeLoad& load = loads[i];
     require(load.node >= 0 && load.node < static_cast<int>(nodes.size()), entry("loads", i) + ".node", load.node,

@@ -6,8 +6,8 @@ namespace mmgrasp::detail {
 
 /// Where a curve over [0, 1] is farthest from the origin.
 struct LongestPoint {
-  double squared = 0;  ///< Of the distance.
-  double at = 0;       ///< In [0, 1].
+  double squared = 0;  ///< Square of the distance.
+  double at = 0;       ///< Where on the curve, in [0, 1].
 };
 
 /// Raises `best` to the curve's largest squared distance when that is more than `best` has, within 1e-9 of it. A

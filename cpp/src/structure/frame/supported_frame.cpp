@@ -63,6 +63,15 @@ Vector3d gravity_in_object(const Pose& T_world_object, double gravity) {
   return -gravity * T_world_object.linear().row(2).transpose();
 }
 
+BeamState BeamFrame::deflection(const Grasp& grasp, const Pose& T_world_object, double gravity) const {
+  return deflection({beam_support(grasp)}, T_world_object, gravity);
+}
+
+BeamState BeamFrame::deflection(const std::vector<BeamSupport>& supports, const Pose& T_world_object,
+                                double gravity) const {
+  return SupportedFrame(*this, supports).state(gravity_in_object(T_world_object, gravity));
+}
+
 SupportedFrame::SupportedFrame(const BeamFrame& frame, const std::vector<BeamSupport>& supports) {
   frame.check();
   auto data = std::make_shared<Data>();
@@ -217,10 +226,8 @@ void SupportedFrame::Data::find_stress(const Eigen::Vector4d& load, const Vector
   const auto raise = [](std::optional<BeamExtreme>& best, double value, const Piece& piece, double x) {
     if (!best || value > best->value) best = BeamExtreme{value, piece.member, piece.from + x};
   };
-  for (const BeamMember& member : frame.members) {
-    if (!member.section.stresses_known()) return;
-  }
   for (const Piece& piece : pieces) {
+    if (!frame.members[piece.member].section.stresses_known()) continue;
     const Vector3d weight = piece.element.line_density() * gravity;
     const Vector12d at_ends = piece.element.end_forces(ends(piece, load), weight);
     const double length = piece.element.length();

@@ -12,7 +12,7 @@ namespace mmgrasp::detail {
 
 /// The object of a path in the hand, as each grasp in turn holds it: a checker for each opening of the fingers, in
 /// which only the object's place changes.
-class AttachedObject {
+class MMGRASP_EXPORT AttachedObject {
  public:
   explicit AttachedObject(const ObjectPathProblem& problem) : problem_(problem) {}
 

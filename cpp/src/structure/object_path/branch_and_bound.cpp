@@ -1,6 +1,7 @@
 #include "structure/object_path/branch_and_bound.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <queue>
 
 #include "mmgrasp/core/detail/numbers.hpp"
@@ -20,7 +21,6 @@ constexpr double kSmallest = 1e-7;  // [rad] Half angles below are not divided a
 struct Node {
   GraspBox box;
   double bound = 0;
-  double estimate = kInfinity;
   int number = 0;  ///< Ties go to the older one.
 };
 struct Later {
@@ -51,7 +51,8 @@ void halve(const GraspBox& box, std::vector<Node>& out) {
 }  // namespace
 
 BoxSearch divide_boxes(const ObjectPathProblem& problem, const Pipe& pipe, const ObjectPathOptions& path_options,
-                       const GraspSearchOptions& options, double cost, const Monitor& monitor) {
+                       const GraspSearchOptions& options, double cost, const GraspCounter& count,
+                       const Monitor& monitor) {
   const TimeLimit time_limit(options.time_limit);
   const PathBound bounds(problem, pipe, path_options, options.grasp);
   const int threads = resolve_threads(options.threads);
@@ -68,10 +69,7 @@ BoxSearch divide_boxes(const ObjectPathProblem& problem, const Pipe& pipe, const
   for (std::size_t i = 0; i < sections.sections().size(); ++i) {
     for (const bool flipped : {false, true}) {
       const double half = sections.room(static_cast<int>(i)) / 2;
-      open.push({{sections.sections()[i], flipped, options.grasp.end_margin + half, half, 0, kPi},
-                 0,
-                 kInfinity,
-                 out.boxes++});
+      open.push({{sections.sections()[i], flipped, options.grasp.end_margin + half, half, 0, kPi}, 0, out.boxes++});
     }
   }
   double settled = kInfinity;  // least bound of boxes that are not divided any more
@@ -90,7 +88,7 @@ BoxSearch divide_boxes(const ObjectPathProblem& problem, const Pipe& pipe, const
       }
     }
     const double best = cost;
-    std::vector<double> found(next.size(), kInfinity);
+    std::vector<std::optional<ObjectPathResult>> tried(next.size());
     parallel_for(next.size(), threads, [&](std::size_t i, int worker) {
       Node& node = next[i];
       const Grasp grasp = middle_of(pipe, node.box, options.grasp);
@@ -99,20 +97,22 @@ BoxSearch divide_boxes(const ObjectPathProblem& problem, const Pipe& pipe, const
       while (bound.cost < best && proofs[worker].exclude(graph, bound.branches, grasp)) bound = graph.bound();
       node.bound = std::max(node.bound, bound.cost);
       if (node.bound >= best || bound.estimate >= best) return;
-      const ObjectPathResult result = evaluators[worker].evaluate(grasp);
-      if (result.outcome == Outcome::solved) found[i] = result.cost;
+      tried[i] = evaluators[worker].evaluate(grasp);
     });
     for (std::size_t i = 0; i < next.size(); ++i) {
       Node& node = next[i];
       node.number = out.boxes++;
-      if (found[i] < cost) {
-        Grasp grasp = middle_of(pipe, node.box, options.grasp);
-        const ObjectPathResult finer = follow_object_path(problem, grasp, path_options);
-        ++out.evaluations;
-        if (finer.outcome == Outcome::solved && finer.cost < cost) {
-          cost = grasp.cost = finer.cost;
-          out.found.push_back({grasp, finer.joint_motion, finer.deflection, finer.force_manipulability});
+      if (tried[i]) {
+        const Grasp grasp = middle_of(pipe, node.box, options.grasp);
+        if (tried[i]->outcome == Outcome::solved && tried[i]->cost < cost) {
+          const ObjectPathResult finer = follow_object_path(problem, grasp, path_options);
+          if (finer.outcome == Outcome::solved) {
+            cost = std::min(cost, finer.cost);
+          } else {
+            tried[i]->outcome = finer.outcome;  // what fails the finer check is no candidate
+          }
         }
+        count(grasp, *tried[i]);
       }
       if (node.bound < cost) open.push(node);
     }

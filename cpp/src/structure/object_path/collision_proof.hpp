@@ -10,7 +10,7 @@ namespace mmgrasp::detail {
 
 /// Rules out arm configurations that collide wherever in a box of grasps they are: two bodies that overlap in the
 /// middle by more than any of their points moves over the box.
-class CollisionProof {
+class MMGRASP_EXPORT CollisionProof {
  public:
   explicit CollisionProof(const ObjectPathProblem& problem) : object_(problem) {}
 

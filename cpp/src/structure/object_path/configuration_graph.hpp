@@ -44,7 +44,7 @@ class MMGRASP_EXPORT ConfigurationGraph {
     bool checked;
     double cost;  ///< Infinite once taken out.
   };
-  /// Of the next layer's vertices in order: vertex v has those from first[v] to first[v + 1].
+  /// Edges to the next layer's vertices in order: vertex v has those from first[v] to first[v + 1].
   struct Layer {
     std::vector<int> first;
     std::vector<Edge> edges;

@@ -29,9 +29,10 @@ GraspVariables::GraspVariables(const Pipe& pipe, const PipeGraspOptions& grasp) 
 std::vector<SearchVariable> GraspVariables::variables() const {
   using Kind = SearchVariable::Kind;
   const double longest = *std::max_element(room_.begin(), room_.end());
-  return {{"section", Kind::whole, 0, static_cast<double>(sections_.size() - 1)},
-          {"length", Kind::real, 0, longest},
-          {"angle", Kind::real, -kPi, kPi},
+  constexpr double kMutation = 0.1, kTurn = 100 * kPi / 180;  // [m], [rad] of the genetic algorithm (P2 3.5.1)
+  return {{"section", Kind::category, 0, static_cast<double>(sections_.size() - 1)},  // P2: no velocities for it
+          {"length", Kind::real, 0, longest, kMutation},
+          {"angle", Kind::real, -kPi, kPi, kTurn},
           {"flip", Kind::category, 0, 1}};
 }
 

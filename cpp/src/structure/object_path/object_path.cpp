@@ -29,6 +29,18 @@ struct Configurations {
   std::vector<VectorXd> manipulability;
 };
 
+/// Where the group stands; a base that moves in the middle of its bounds.
+VectorXd configuration_of(const JointGroup& group) {
+  VectorXd q = 0.5 * (group.sample_lower() + group.sample_upper());
+  int place = 0;  // within the values of a joint
+  for (int i = group.has_base() ? 3 : 0; i < group.size(); ++i) {
+    const int joint = group.joints()[i];
+    place = i > 0 && group.joints()[i - 1] == joint ? place + 1 : 0;
+    q[i] = group.reference()[group.robot().joints()[joint].value_index + place];
+  }
+  return q;
+}
+
 /// The pose half way, turned about one axis.
 Pose half_way(const Pose& a, const Pose& b) {
   Pose middle = Pose::Identity();
@@ -87,7 +99,7 @@ struct ObjectPathEvaluator::Impl {
   const JointGroup* group = nullptr;
   detail::PathConfigurations* solver = nullptr;
   detail::AttachedChecker* checker = nullptr;
-  Poses half_way_poses;         ///< Of the object, after each pose.
+  Poses half_way_poses;         ///< Poses of the object half-way to the next, one after each pose.
   bool stress_limited = false;  ///< Some member's material has a limit.
 
   Impl(const ObjectPathProblem& given, const ObjectPathOptions& with) : problem(given), options(with) {}
@@ -104,7 +116,7 @@ struct ObjectPathEvaluator::Impl {
 Configurations ObjectPathEvaluator::Impl::find(const Poses& T_world_hand, ObjectPathResult& result) const {
   Configurations found;
   solver->place_bases(T_world_hand);
-  VectorXd last = 0.5 * (group->sample_lower() + group->sample_upper());
+  VectorXd last = options.single_configuration ? configuration_of(*group) : VectorXd();
   for (std::size_t i = 0; i < T_world_hand.size(); ++i) {
     const Vector6d motion = i == 0 ? Vector6d::Zero().eval() : pose_difference(T_world_hand[i - 1], T_world_hand[i]);
     detail::PathConfigurations::Layer layer = options.single_configuration
@@ -162,7 +174,7 @@ ConfigurationGraph ObjectPathEvaluator::Impl::graph(const Configurations& found)
   const auto& wraps = group->wraps();
   std::vector<int> order;
   for (std::size_t layer = 0; layer + 1 < sizes.size(); ++layer) {
-    // Of many configurations only those are tried that are near in the value that spreads most.
+    // When there are many configurations only those are tried that are near in the value that spreads most.
     const MatrixXd& q = found.q[layer];
     Eigen::Index value = -1;
     double widest = 0;
@@ -330,7 +342,7 @@ ObjectPathResult ObjectPathEvaluator::evaluate(const Grasp& grasp) {
       if (!checked[i].emplace(ends, true).second) continue;
       const VectorXd from = found.q[i].col(ends.first), to = found.q[i + 1].col(ends.second);
       if ((sampled || stays_near(i, ends.first, ends.second)) &&
-          (!own.options.check_edges || own.checker->way_is_free(from, from + own.step(from, to), own.edge)))
+          (!own.options.check_edges || own.checker->edge_stays_free(from, from + own.step(from, to), own.edge)))
         continue;
       graph.remove_edge(i, ends.first, ends.second);
       ++result.refused_edges;

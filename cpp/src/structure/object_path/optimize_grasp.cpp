@@ -2,36 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "structure/bound/ik_enclosure.hpp"
 #include "structure/object_path/branch_and_bound.hpp"
+#include "structure/object_path/grasp_front.hpp"
 #include "structure/object_path/grasp_variables.hpp"
 
 namespace mmgrasp {
 namespace {
 
 constexpr const char* kBranchAndBound = "branch_and_bound";
-
-/// Neither other objective grows where one shrinks: indices of those that no other is at least as good as in all.
-std::vector<int> pareto_front(const std::vector<FeasibleGrasp>& all) {
-  std::vector<int> order(all.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return all[a].joint_motion < all[b].joint_motion; });
-  const auto beats = [](const FeasibleGrasp& a, const FeasibleGrasp& b) {
-    const bool no_worse = a.joint_motion <= b.joint_motion && a.deflection <= b.deflection &&
-                          a.force_manipulability <= b.force_manipulability;
-    return no_worse && (a.joint_motion < b.joint_motion || a.deflection < b.deflection ||
-                        a.force_manipulability < b.force_manipulability);
-  };
-  std::vector<int> front;
-  for (const int i : order) {
-    if (std::none_of(all.begin(), all.end(), [&](const FeasibleGrasp& other) { return beats(other, all[i]); }))
-      front.push_back(i);
-  }
-  return front;
-}
 
 }  // namespace
 
@@ -44,6 +26,10 @@ const char* to_string(GraspNeighbourhood neighbourhood) {
     default:
       return "connected_sections";
   }
+}
+
+std::string default_grasp_search(const JointGroup& group) {
+  return detail::IkEnclosure::takes(group) ? kBranchAndBound : "bees";
 }
 
 std::vector<std::string> grasp_search_names() {
@@ -61,6 +47,7 @@ void GraspSearchOptions::check() const {
   require(max_gap > 0 && max_gap < 1, "max_gap", max_gap, "must be in (0, 1)");
   require(max_boxes > 0, "max_boxes", max_boxes, "must be positive");
   require(time_limit > 0, "time_limit", time_limit, "must be positive [s]");
+  require(front_searches >= 0, "front_searches", front_searches, "must not be negative");
   require(threads >= 0, "threads", threads, "must not be negative");
   population.check();
   grasp.check();
@@ -92,48 +79,59 @@ GraspOptimum optimize_grasp(const ObjectPathProblem& problem, const Pipe& pipe, 
   search.neighbour = [&](const Eigen::VectorXd& x, double size, Rng& rng) {
     return grasps.neighbour(x, size, options.neighbourhood, rng);
   };
-  search.evaluate = [&](const Eigen::VectorXd& x) {
-    Grasp grasp = grasps.grasp(x);
-    const ObjectPathResult found = evaluator.evaluate(grasp);
+  const auto count = [&](Grasp grasp, const ObjectPathResult& found) {
+    ++out.evaluations;
     for (std::size_t i = 0; i < found.violations.size(); ++i) {
       out.unreachable[i] += found.violations[i] == 2;
       out.colliding[i] += found.violations[i] == 1;
     }
     for (const int pose : found.overloaded) ++out.overloaded[pose];
-    if (found.outcome == Outcome::solved) {
-      grasp.cost = found.cost;
-      out.feasible.push_back({grasp, found.joint_motion, found.deflection, found.force_manipulability});
-    }
-    return ConstrainedValue{static_cast<double>(found.violation), found.cost};
+    if (found.outcome != Outcome::solved) return;
+    grasp.cost = found.cost;
+    out.feasible.push_back({grasp, found.joint_motion, found.deflection, found.force_manipulability});
+  };
+  std::function<double(const ObjectPathResult&)> value = [](const ObjectPathResult& found) { return found.cost; };
+  search.evaluate = [&](const Eigen::VectorXd& x) {
+    const Grasp grasp = grasps.grasp(x);
+    const ObjectPathResult found = evaluator.evaluate(grasp);
+    count(grasp, found);
+    return ConstrainedValue{static_cast<double>(found.violation), found.violation > 0 ? 0 : value(found)};
   };
   const bool prove = options.algorithm == kBranchAndBound;
-  const PopulationResult found =
-      make_population_search(prove ? "bees" : options.algorithm)->solve(search, options.population, monitor);
-  out.evaluations = found.evaluations;
+  const auto population = make_population_search(prove ? "bees" : options.algorithm);
+  const PopulationResult found = population->solve(search, options.population, monitor);
   out.history = found.history;
-  std::stable_sort(out.feasible.begin(), out.feasible.end(),
-                   [](const FeasibleGrasp& a, const FeasibleGrasp& b) { return a.grasp.cost < b.grasp.cost; });
   // What fails the finer check is no candidate for anyone; the cheapest that passes is the answer.
   const auto check_first = [&] {
+    std::stable_sort(out.feasible.begin(), out.feasible.end(),
+                     [](const FeasibleGrasp& a, const FeasibleGrasp& b) { return a.grasp.cost < b.grasp.cost; });
     while (!out.feasible.empty()) {
       out.path = follow_object_path(problem, out.feasible.front().grasp, path_options);
       if (out.path.outcome == Outcome::solved) return;
       out.feasible.erase(out.feasible.begin());
     }
   };
-  check_first();
   bool stopped = found.outcome == Outcome::stopped;
+  if (!out.feasible.empty()) {
+    PopulationOptions further = options.population;
+    further.target = PopulationOptions().target;
+    for (const auto& objective : detail::front_objectives(out.feasible, options.front_searches)) {
+      if (stopped) break;
+      value = objective;
+      ++further.seed;
+      stopped = population->solve(search, further, monitor).outcome == Outcome::stopped;
+    }
+  }
+  check_first();
   if (prove && !stopped) {
     const double cost = out.feasible.empty() ? detail::kInfinity : out.path.cost;
-    const detail::BoxSearch boxes = detail::divide_boxes(problem, pipe, path_options, options, cost, monitor);
-    out.feasible.insert(out.feasible.begin(), boxes.found.rbegin(), boxes.found.rend());
-    if (!boxes.found.empty()) check_first();
+    const detail::BoxSearch boxes = detail::divide_boxes(problem, pipe, path_options, options, cost, count, monitor);
+    check_first();
     out.lower_bound = boxes.lower_bound;
     out.boxes = boxes.boxes;
-    out.evaluations += boxes.evaluations;
     stopped = boxes.stopped;
   }
-  out.front = pareto_front(out.feasible);
+  out.front = detail::pareto_front(out.feasible);
   if (out.feasible.empty()) {
     out.gap = 1;
     const bool proven = out.lower_bound == detail::kInfinity;

@@ -155,6 +155,25 @@ PathConfigurations::Layer PathConfigurations::at(const Pose& T_world_hand, const
 
 PathConfigurations::Layer PathConfigurations::single(const Pose& T_world_hand, const Vector6d& motion,
                                                      const VectorXd& seed) {
+  if (arm_->known_form() && !group_.has_base()) {
+    Layer all = at(T_world_hand, motion);
+    if (all.q.cols() < 2) return all;
+    Eigen::Index nearest = 0;
+    double least = kInfinity;
+    for (Eigen::Index i = 0; i < all.q.cols(); ++i) {
+      double squared = 0;
+      for (Eigen::Index j = 0; j < seed.size(); ++j) {
+        const double move = all.q(j, i) - seed[j];
+        squared += std::pow(group_.wraps()[j] ? shortest_turn(move) : move, 2);
+      }
+      if (squared >= least) continue;
+      least = squared;
+      nearest = i;
+    }
+    all.q = all.q.col(nearest).eval();
+    all.manipulability = all.manipulability.segment<1>(nearest).eval();
+    return all;
+  }
   motion_ = motion;
   values_.clear();
   forces_.clear();

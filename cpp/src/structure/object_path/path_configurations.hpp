@@ -24,12 +24,12 @@ class PathConfigurations {
   struct Layer {
     Eigen::MatrixXd q;               ///< A column each.
     Eigen::VectorXd manipulability;  ///< Along the motion (P2 3.2.3.3.3); 0 without one.
-    Rejections rejections;           ///< Of what does not reach the pose.
+    Rejections rejections;           ///< Causes for which configurations do not reach the pose.
   };
   /// `motion`: of the tool, a twist; zero for none.
   Layer at(const Pose& T_world_hand, const Vector6d& motion);
 
-  /// As a numerical solver that knows no branches finds one: a descent from `seed`, then from random starts.
+  /// The nearest to `seed` where all are known, else what a descent from there finds, then one from random starts.
   Layer single(const Pose& T_world_hand, const Vector6d& motion, const Eigen::VectorXd& seed);
 
   /// Several hundred configurations a pose, of which neighbours differ by the grid.
@@ -48,7 +48,7 @@ class PathConfigurations {
   std::optional<WholeTurns> turns_;
   Eigen::VectorXd middle_;
   std::vector<Eigen::Vector3d> bases_;
-  // Of the pose at hand:
+  // These belong to the pose at hand.
   Vector6d motion_;
   Eigen::VectorXd q_;
   Matrix6Xd J_;

@@ -135,10 +135,10 @@ Rejection GraspSearch::try_grasp(const Eigen::Vector3d& base_pose, const Part& p
 
 /// The same posture, whole turns aside: all joints of an arm with a closed form turn.
 bool GraspSearch::was_rejected(const Eigen::VectorXd& q) const {
-  constexpr double kSame = 1e-3;  // [rad]
+  constexpr double kSamePosture = 1e-3;  // [rad]
   for (Eigen::Index i = 0; i < rejected_count_; ++i) {
     Eigen::Index j = 0;
-    while (j < q.size() && std::abs(wrap_angle(q[j] - rejected_(j, i))) < kSame) ++j;
+    while (j < q.size() && std::abs(wrap_angle(q[j] - rejected_(j, i))) < kSamePosture) ++j;
     if (j == q.size()) return true;
   }
   return false;

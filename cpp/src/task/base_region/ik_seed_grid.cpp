@@ -12,8 +12,8 @@ namespace {
 constexpr int kFruitless = 2;    // Seeds without a solution after which a node counts as out of reach.
 constexpr int kIterations = 20;  // Most of one IK search: from a stored configuration near by a success takes 4 to 10.
 constexpr double kFar =
-    1.2;  // In cells of the database: a node without a stored configuration so near is out of reach.
-constexpr double kSame = 1e-3;  // Configurations nearer than this are one [rad or m].
+    1.2;  // Distance in cells of the database: a node without a stored configuration so near is out of reach.
+constexpr double kSameConfiguration = 1e-3;  // Configurations nearer than this are one [rad or m].
 constexpr double kPerUnit =
     8;  // Cells per unit of a rotation matrix's entries, centred on 0 and 1, so that upright tools are.
 // Cells begin at no round number: base grids and trays have those, and roundings would decide between two cells.
@@ -116,7 +116,7 @@ double IkSeedGrid::Slice::squared_distance(int ix, int iy, double x, double y) c
 
 const double* IkSeedGrid::Node::solution(int k, const IkSeedGrid& grid, const Pose& T_base_node) {
   if (k >= found_.load(std::memory_order_acquire)) {
-    // In this order: the last one may have been found in between.
+    // The order matters: the last one may have been found in between.
     if (exhausted_.load(std::memory_order_acquire) && k >= found_.load(std::memory_order_acquire)) return nullptr;
     const std::lock_guard<std::mutex> lock(mutex_);
     while (k >= found_.load(std::memory_order_relaxed)) {
@@ -179,7 +179,7 @@ bool IkSeedGrid::Node::search(const IkSeedGrid& grid, const Pose& T_base_node) {
     return true;
   }
   for (int i = 0; i < found; ++i) {
-    if ((configurations_.col(i) - q).cwiseAbs().maxCoeff() < kSame) return true;
+    if ((configurations_.col(i) - q).cwiseAbs().maxCoeff() < kSameConfiguration) return true;
   }
   configurations_.col(found) = q;
   found_.store(found + 1, std::memory_order_release);

@@ -13,10 +13,10 @@
 namespace mmgrasp::detail {
 namespace {
 
-constexpr double kMargin = 2.0;      // [m] around what is in the scene
-constexpr double kMaxCells = 40000;  // Largest number of cells of a floor.
-constexpr double kJoin = 2.0;        // Cells around a place that it joins.
-constexpr double kCheckStep = 0.02;  // [m]; nothing is swept here, BaseClearance wants one
+constexpr double kMargin = 2.0;            // [m] around what is in the scene
+constexpr double kMaxCells = 40000;        // Largest number of cells of a floor.
+constexpr double kConnectionRadius = 2.0;  // A place is connected with the cells within this radius, in cells.
+constexpr double kCheckStep = 0.02;        // [m]; nothing is swept here, BaseClearance wants one
 
 /// Eight axes of driving, each both ways.
 constexpr std::array<std::array<int, 2>, 8> kAxes = {
@@ -65,7 +65,7 @@ FloorField::FloorField(const CollisionChecker& checker, const Eigen::VectorXd& h
         for (std::size_t j = 0; j < places.size(); ++j) {
           if (j == i) continue;
           const Eigen::Vector2d to = places[j].head<2>();
-          double best = (from - to).norm() <= kJoin * resolution_ ? (from - to).norm() : kInfinity;
+          double best = (from - to).norm() <= kConnectionRadius * resolution_ ? (from - to).norm() : kInfinity;
           around(to, [&](std::size_t cell, double distance) { best = std::min(best, field[cell] + distance); });
           lengths_(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = best;
         }
@@ -103,11 +103,13 @@ bool FloorField::passable(int ix, int iy, int direction) const {
 template <class Visit>
 void FloorField::around(const Eigen::Vector2d& place, const Visit& visit) const {
   const Eigen::Vector2d at = (place - bounds_.min()) / resolution_;
-  for (int iy = static_cast<int>(at.y() - kJoin); iy <= static_cast<int>(at.y() + kJoin); ++iy) {
-    for (int ix = static_cast<int>(at.x() - kJoin); ix <= static_cast<int>(at.x() + kJoin); ++ix) {
+  for (int iy = static_cast<int>(at.y() - kConnectionRadius); iy <= static_cast<int>(at.y() + kConnectionRadius);
+       ++iy) {
+    for (int ix = static_cast<int>(at.x() - kConnectionRadius); ix <= static_cast<int>(at.x() + kConnectionRadius);
+         ++ix) {
       if (ix < 0 || iy < 0 || ix >= nx_ || iy >= ny_ || free_[cell(ix, iy)] == 0) continue;
       const double distance = (middle(ix, iy) - place).norm();
-      if (distance <= kJoin * resolution_) visit(cell(ix, iy), distance);
+      if (distance <= kConnectionRadius * resolution_) visit(cell(ix, iy), distance);
     }
   }
 }

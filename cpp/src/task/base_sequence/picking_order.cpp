@@ -106,9 +106,9 @@ class GroupOrder {
 
  private:
   bool better(const Value& a, const Value& b) const {
-    constexpr double kSame = 1e-9;
-    if (options_.smallest_first && std::abs(a.smallest - b.smallest) > kSame) return a.smallest > b.smallest;
-    return a.sum > b.sum + kSame;
+    constexpr double kTie = 1e-9;  // values that differ by less are equally good
+    if (options_.smallest_first && std::abs(a.smallest - b.smallest) > kTie) return a.smallest > b.smallest;
+    return a.sum > b.sum + kTie;
   }
 
   /// Number of orders with the first tray's kept.

@@ -10,8 +10,8 @@
 namespace mmgrasp {
 namespace {
 
-constexpr double kRadiusSlack = 1e-9;  // [m]: a disc of exactly the least radius counts.
-constexpr std::size_t kLostKept = 200;
+constexpr double kRadiusSlack = 1e-9;      // [m]: a disc of exactly the least radius counts.
+constexpr std::size_t kMaxTooSmall = 200;  // Most of Intersections::too_small that are kept.
 
 using Words = std::vector<std::uint64_t>;
 
@@ -101,7 +101,7 @@ class LayerGrowth {
       return true;
     }
     ++out_.sets_too_small;
-    out_.lost.push_back(std::move(some));
+    out_.too_small.push_back(std::move(some));
     return false;
   }
 
@@ -141,9 +141,9 @@ Intersections robust_intersections(const BaseGrid& grid, const std::vector<BaseR
     LayerGrowth(grid, heading, min_radius, max_sets, result).run(regions);
   }
   result.complete = result.sets_tried < max_sets;
-  std::stable_sort(result.lost.begin(), result.lost.end(),
+  std::stable_sort(result.too_small.begin(), result.too_small.end(),
                    [](const Intersection& a, const Intersection& b) { return a.radius > b.radius; });
-  if (result.lost.size() > kLostKept) result.lost.resize(kLostKept);
+  if (result.too_small.size() > kMaxTooSmall) result.too_small.resize(kMaxTooSmall);
   return result;
 }
 

@@ -37,7 +37,7 @@ double reach_bound(const JointGroup& group) {
 
 double slack_of(const DriveByStep& step) {
   double square = 0;
-  for (int k = 0; k < 3; ++k) square += step.free[k] ? kInfinity : step.tolerance[k] * step.tolerance[k];
+  for (int k = 0; k < 3; ++k) square += step.free_axes[k] ? kInfinity : step.tolerance[k] * step.tolerance[k];
   return std::sqrt(square);
 }
 

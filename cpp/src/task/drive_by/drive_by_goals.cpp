@@ -15,9 +15,9 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr double kNear = 0.35, kFar = 1.1;  // distance of base and tool on the floor [m]
-constexpr double kHeadingSpread = 0.6;      // deviation from the direction of travel [rad]
-constexpr double kTwin = 0.3;               // configurations closer than this in every value are one
+constexpr double kMinBaseToTool = 0.35, kMaxBaseToTool = 1.1;  // distance along the floor of the bases tried [m]
+constexpr double kHeadingSpread = 0.6;                         // deviation from the direction of travel [rad]
+constexpr double kSameConfiguration = 0.3;  // configurations closer than this in every value count as one [rad or m]
 constexpr int kRounds = 8;                  // rounds of tries while nothing is found
 
 double direction(const VectorXd& from, const VectorXd& to, double otherwise) {
@@ -29,7 +29,7 @@ double direction(const VectorXd& from, const VectorXd& to, double otherwise) {
 Pose drawn_pose(const DriveByTask& task, int candidate, Rng& rng) {
   Pose T = task.candidates[candidate];
   for (int i = 3; i < 6; ++i)
-    if (task.free[i]) T.rotate(Eigen::AngleAxisd(rng.uniform(-kPi, kPi), Eigen::Vector3d::Unit(i - 3)));
+    if (task.free_axes[i]) T.rotate(Eigen::AngleAxisd(rng.uniform(-kPi, kPi), Eigen::Vector3d::Unit(i - 3)));
   return T;
 }
 
@@ -95,7 +95,7 @@ GoalConfigurations find_goal_configurations(const JointGroup& group, CollisionCh
       seed.tail(seed.size() - (group.has_base() ? 3 : 0)) = any.tail(seed.size() - (group.has_base() ? 3 : 0));
     }
     if (group.has_base()) {
-      const double angle = rng.uniform(-kPi, kPi), radius = rng.uniform(kNear, kFar);
+      const double angle = rng.uniform(-kPi, kPi), radius = rng.uniform(kMinBaseToTool, kMaxBaseToTool);
       seed[0] = T.translation().x() + radius * std::cos(angle);
       seed[1] = T.translation().y() + radius * std::sin(angle);
       seed[2] = along + kHeadingSpread * rng.normal();
@@ -128,7 +128,7 @@ GoalConfigurations find_goal_configurations(const JointGroup& group, CollisionCh
   GoalConfigurations result;
   for (const auto& [time, i] : order) {
     const bool twin = std::any_of(result.begin(), result.end(), [&](const GoalConfiguration& s) {
-      return s.candidate == found[i].candidate && (s.q - found[i].q).cwiseAbs().maxCoeff() < kTwin;
+      return s.candidate == found[i].candidate && (s.q - found[i].q).cwiseAbs().maxCoeff() < kSameConfiguration;
     });
     if (!twin) result.push_back(found[i]);
   }

@@ -87,7 +87,7 @@ SeededProblem DriveBySeeds::make(const ConfigurationSequence& sequence, int wayp
     }
   }
   a.guess = guess_through(group_, a.via_points, a.intervals, a.times, ways);
-  a.guess.free = route != nullptr;
+  a.guess.collision_free = route != nullptr;
   return a;
 }
 

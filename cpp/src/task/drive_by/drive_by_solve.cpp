@@ -62,7 +62,7 @@ WholeBodyResult DriveBySolver::solve(const ConfigurationSequence& sequence, cons
     for (int s = 0; s < static_cast<int>(a.intervals.size()); ++s)
       ends.push_back(r.trajectory->times()[a.problem.segment_end(s)]);
     fine.guess = resampled(*r.trajectory, ends, fine.intervals);
-    fine.guess.free = !fine.checkers.empty();
+    fine.guess.collision_free = !fine.checkers.empty();
     const int before = r.iterations;
     r = optimize(fine, kRefine);
     r.iterations += before;

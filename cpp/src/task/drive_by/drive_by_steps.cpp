@@ -32,7 +32,7 @@ void check_push(const DriveByTask& task, const std::string& field) {
           "must leave a moment to close for every error asked for (at most " + std::to_string(grasp.max_tool_speed) +
               " m/s)");
   require(task.dwell == 0, field + " with dwell", task.dwell, "must be 0: the hand moves on");
-  require(task.max_tool_speed == kInfinity && task.tolerance.isZero() && task.free == std::vector<bool>(6, false),
+  require(task.max_tool_speed == kInfinity && task.tolerance.isZero() && task.free_axes == std::vector<bool>(6, false),
           field + " with max_tool_speed, tolerance or free", 1, "must be left out: the push-grasp has its own");
 }
 
@@ -99,7 +99,8 @@ void check_tasks(const std::vector<DriveByTask>& tasks, const World& world) {
       require(task.tolerance[k] >= 0 && std::isfinite(task.tolerance[k]),
               field + ".tolerance[" + std::to_string(k) + "]", task.tolerance[k], "must be at least 0 and finite");
     }
-    require(task.free.size() == 6, field + ".free", static_cast<double>(task.free.size()), "must have 6 entries");
+    require(task.free_axes.size() == 6, field + ".free_axes", static_cast<double>(task.free_axes.size()),
+            "must have 6 entries");
     require(task.max_tool_speed > 0, field + ".max_tool_speed", task.max_tool_speed, "must be positive");
     require(task.object.empty() || world.objects().count(task.object) > 0, field + ".object", "'" + task.object + "'",
             "must be an object of the world");
@@ -118,7 +119,7 @@ ToolConstraint constraint_at(const DriveByStep& step, int candidate, int waypoin
   tool.waypoint = waypoint;
   tool.T_world_tip = step.candidates[candidate];
   for (int k = 0; k < 6; ++k) {
-    const double slack = step.free[k] ? kInfinity : step.tolerance[k];
+    const double slack = step.free_axes[k] ? kInfinity : step.tolerance[k];
     tool.lower[k] = -slack;
     tool.upper[k] = slack;
   }

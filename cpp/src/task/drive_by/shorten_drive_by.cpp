@@ -62,7 +62,7 @@ WholeBodyGuess guess_along(const KnownMotion& known, const std::vector<DriveByTa
   }
   ends.push_back(known.times.back());
   WholeBodyGuess guess;
-  guess.free = true;
+  guess.collision_free = true;
   double from = known.times.front();
   for (std::size_t s = 0; s < intervals.size(); ++s) {
     const double step = (ends[s] - from) / intervals[s];
@@ -101,8 +101,8 @@ DriveByResult shorten_drive_by(const JointGroup& group, const World& world, cons
   WholeBodyResult r;
   // Separating bodies as they lie in the known motion keeps that motion feasible, but holds the new one back where it
   // is elsewhere at the same waypoint.
-  for (const bool parts_bodies : {false, true}) {
-    a.guess.parts_bodies = parts_bodies;
+  for (const bool keeps_sides : {false, true}) {
+    a.guess.keeps_sides = keeps_sides;
     r = optimize_whole_body(a.problem, a.guess, options.trajectory, a.checkers, monitor);
     ++result.solves;
     result.iterations += r.iterations;

@@ -40,7 +40,7 @@ const char* main_cause(const Rejections& r) {
   const std::size_t most = std::max({r.unreachable, r.limits, r.self_collision, r.scene, r.grasp_filter});
   if (most == 0) return "nothing";
   if (most == r.grasp_filter) return "the open hand touching the scene or a neighbour";
-  if (most == r.unreachable) return "reach";
+  if (most == r.unreachable) return "poses out of reach";
   if (most == r.limits) return "joint limits";
   if (most == r.self_collision) return "self-collision";
   return "collisions with the scene";

@@ -30,7 +30,7 @@ struct Miss {
 struct StopSamples {
   bool stopped = false;
   std::vector<StopShare> stops;
-  std::vector<std::vector<Miss>> misses;  ///< By stop.
+  std::vector<std::vector<Miss>> misses;  ///< One list for each stop.
 };
 
 /// Where the base comes to stand when it drives to a stop.
@@ -48,7 +48,7 @@ struct RobustnessResult {
   bool stopped = false;
   std::vector<StopShare> stops;
   std::size_t cells_removed = 0;
-  std::vector<std::string> worst_part;  ///< By stop: the part that failed most often; empty when none did.
+  std::vector<std::string> worst_part;  ///< The part that failed most often at each stop; empty when none did.
   /// Least share of a stop; 1 without stops.
   double rate() const { return stops.empty() ? 1.0 : stops[worst_stop()].rate(); }
   /// Index of the stop with the least share; there must be one.

@@ -17,11 +17,11 @@
 namespace mmgrasp::detail {
 namespace {
 
-constexpr double kSame = 1e-2;           // Configurations nearer than this are one [rad or m].
-constexpr int kConfigurations = 6;       // Tried for one grasp.
-constexpr int kMotionTries = 12;         // Grasp configurations that may reach the costly stage.
-constexpr std::size_t kReleases = 6;     // Goals of a transfer.
-constexpr double kLineDeviation = 2e-4;  // Blending of straight tool motions [rad]: the tool stays on its line.
+constexpr double kSameConfiguration = 1e-2;  // Configurations nearer than this are one [rad or m].
+constexpr int kConfigurations = 6;           // Tried for one grasp.
+constexpr int kMotionTries = 12;             // Grasp configurations that may reach the costly stage.
+constexpr std::size_t kReleases = 6;         // Goals of a transfer.
+constexpr double kLineDeviation = 2e-4;      // Blending of straight tool motions [rad]: the tool stays on its line.
 constexpr double kEdgeStep = 0.02;
 // States per second of motion_time_limit: so few that this budget ends a search before the time limit does.
 constexpr double kStatesPerSecond = 2000;
@@ -84,7 +84,7 @@ class PickPlanner {
     const auto judge = [&](Eigen::VectorXd q) {
       turn_towards(checker.group(), problem_.home, q);
       for (const Eigen::VectorXd& other : found) {
-        if ((q - other).cwiseAbs().maxCoeff() < kSame) return;
+        if ((q - other).cwiseAbs().maxCoeff() < kSameConfiguration) return;
       }
       const Rejection cause = checker.rejection(q);
       pick_.rejections.add(cause);

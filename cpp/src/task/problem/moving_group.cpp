@@ -75,7 +75,7 @@ MovingGroup moving_group(const PartSupplyProblem& problem, TrayId tray) {
   const auto take_tray = [&](TrayId index) {
     if (!group.trays.insert(index).second) return;
     open.push_back(bounds_of(problem.trays[index]));
-    for (const auto& [name, object] : problem.scene.objects()) {
+    for (const auto& [name, object] : problem.world.objects()) {
       if (!belongs_to(bounds_of(object), open.back().front())) continue;
       if (group.objects.insert(name).second) open.push_back(bounds_of(object));
     }
@@ -84,7 +84,7 @@ MovingGroup moving_group(const PartSupplyProblem& problem, TrayId tray) {
   while (!open.empty()) {
     const Bounds now = std::move(open.back());
     open.pop_back();
-    for (const auto& [name, object] : problem.scene.objects()) {
+    for (const auto& [name, object] : problem.world.objects()) {
       const Bounds bounds = bounds_of(object);
       if (!group.objects.count(name) && stacked(now, bounds)) {
         group.objects.insert(name);
@@ -100,10 +100,10 @@ MovingGroup moving_group(const PartSupplyProblem& problem, TrayId tray) {
 
 PartSupplyProblem group_alone(const PartSupplyProblem& problem, const MovingGroup& group) {
   PartSupplyProblem alone = problem;
-  for (const auto& entry : problem.scene.objects()) {
-    if (!group.objects.count(entry.first)) alone.scene.remove(entry.first);
+  for (const auto& entry : problem.world.objects()) {
+    if (!group.objects.count(entry.first)) alone.world.remove(entry.first);
   }
-  for (const auto& entry : problem.scene.fields()) alone.scene.remove(entry.first);
+  for (const auto& entry : problem.world.fields()) alone.world.remove(entry.first);
   for (TrayId tray : all_trays(alone)) {
     if (!group.trays.count(tray)) alone.trays[tray].parts.clear();
   }
@@ -129,7 +129,7 @@ PartSupplyProblem with_group_moved(const PartSupplyProblem& problem, const Movin
     return there;
   };
   for (const std::string& name : group.objects)
-    moved.scene.move(name, shift(problem.scene.objects().at(name).T_world_object));
+    moved.world.move(name, shift(problem.world.objects().at(name).T_world_object));
   for (TrayId index : group.trays) {
     Tray& tray = moved.trays[index];
     tray.T_world_tray = shift(tray.T_world_tray);
@@ -145,7 +145,7 @@ GroupBounds::GroupBounds(const PartSupplyProblem& problem, const MovingGroup& gr
       if (!is_floor(box)) list.push_back(box);
     }
   };
-  for (const auto& [name, object] : problem.scene.objects()) add(bounds_of(object), group.objects.count(name) > 0);
+  for (const auto& [name, object] : problem.world.objects()) add(bounds_of(object), group.objects.count(name) > 0);
   for (TrayId tray : all_trays(problem)) {
     add(bounds_of(problem.trays[tray]), group.trays.count(tray) > 0);
   }

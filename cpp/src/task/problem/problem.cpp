@@ -54,7 +54,7 @@ void check_trays(const PartSupplyProblem& problem) {
     for (const Part& part : tray.parts) {
       require(!part.name.empty() && part_names.insert(part.name).second, "part name", "'" + part.name + "'",
               "must not be empty or used twice");
-      require(!problem.scene.has(part.name), "part name", "'" + part.name + "'",
+      require(!problem.world.has(part.name), "part name", "'" + part.name + "'",
               "is in use for an object of the scene");
       check_part(part, tray.name);
       for (const Grasp& grasp : part.grasps) {
@@ -113,7 +113,7 @@ void PartSupplyProblem::check() const {
   require(place_region.size.allFinite() && place_region.size.minCoeff() > 0, "place_region.size",
           place_region.size.minCoeff(), "must be positive");
   require_not_negative(place_region.drop_height, "place_region.drop_height");
-  require(scene.attached().empty(), "scene", "an attached object", "must hold nothing attached at the start");
+  require(world.attached().empty(), "world", "an attached object", "must hold nothing attached at the start");
   check_arrival_covariance(arrival_covariance);
   require(arrival_covariance.isZero(0) || options.robustness_samples > 0, "robustness_samples", 0,
           "must be positive with an arrival_covariance: so many arrivals are drawn");

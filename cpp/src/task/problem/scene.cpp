@@ -29,7 +29,7 @@ std::vector<PartRef> target_parts(const PartSupplyProblem& problem, TrayId tray)
 }
 
 World world_with_parts(const PartSupplyProblem& problem, const std::vector<PartRef>& parts) {
-  World world = problem.scene;
+  World world = problem.world;
   // A checker refuses pairs that name a part which is not there.
   for (const PartRef& ref : all_parts(problem)) {
     if (std::find(parts.begin(), parts.end(), ref) == parts.end()) world.forget(part_of(problem, ref).name);

@@ -67,7 +67,7 @@ class StopsCheck {
     for (std::size_t i = 0; i < plan_.stops.size(); ++i) check_stop(i, own);
     for (std::size_t i = 0; i < plan_.intersections.size(); ++i) check_intersection(i);
     if (plan_.robustness_rate < context_.options.required_rate || plan_.robustness_rate > 1) {
-      faults_.push_back({"bad-figures", "robustness_rate",
+      faults_.push_back({"wrong-values", "robustness_rate",
                          text(plan_.robustness_rate) + ": must be in [" + text(context_.options.required_rate) +
                              ", 1], or the stops would not be robust"});
     }
@@ -162,7 +162,7 @@ class StopsCheck {
     }
     good = good && std::abs(room - said.radius) <= kFigureBand;
     if (good) return;
-    faults_.push_back({"bad-figures", "intersection " + std::to_string(index),
+    faults_.push_back({"wrong-values", "intersection " + std::to_string(index),
                        "its disc of " + text(said.radius) +
                            " m does not lie in the regions of all its trays, or is not the largest around its centre"});
   }

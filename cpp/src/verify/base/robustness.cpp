@@ -14,8 +14,9 @@ namespace {
 
 constexpr int kChunks = 20;  // Pieces of a stop's samples that are worked on independently.
 
-constexpr double kSureDeviations = 4.5;  // Of the difference of two shares: one right plan in 150,000 stops exceeds it.
-constexpr double kSearchSlack = 0.02;    // Of a share: grasps that a search with kArrivalTries does not find.
+constexpr double kSureDeviations =
+    4.5;  // Standard deviations by which two shares may differ: of right plans one stop in 150,000 exceeds it.
+constexpr double kSearchSlack = 0.02;  // Part of a share: grasps that a search with kArrivalTries does not find.
 constexpr int kTries = 1500;
 constexpr int kArrivalTries = 300;  // Where many arrivals fail, each that does costs all its tries.
 

@@ -10,7 +10,7 @@
 namespace mmgrasp::verify::detail {
 namespace {
 
-constexpr int kMaxNodes = 5000;  // Of branch and bound, so that the answer does not depend on a clock.
+constexpr int kMaxNodes = 5000;  // Most nodes of branch and bound, so that the answer does not depend on a clock.
 
 bool holds(const RegionSet& outer, const RegionSet& inner) {
   return std::includes(outer.begin(), outer.end(), inner.begin(), inner.end());

@@ -18,7 +18,7 @@ enum Kind { kTransit, kApproach, kLift, kTransfer, kRetreat, kKinds };
 constexpr std::array<const char*, kKinds> kKindNames = {"transit", "approach", "lift", "transfer", "retreat"};
 constexpr double kOpening = 1e-6;  // [m]
 
-bool is_holding(int kind) {
+bool has_part_attached(int kind) {
   return kind == kLift || kind == kTransfer;
 }
 
@@ -100,18 +100,18 @@ class PickCheck {
       const double width = grasp_->opening;
       if (!(m.opening >= -kOpening && m.opening <= plan_.max_opening + kOpening)) {
         fault("opening", name(kind), text(m.opening) + " m is outside [0, " + text(plan_.max_opening) + "]");
-      } else if (is_holding(kind) && std::abs(m.opening - width) > kOpening) {
+      } else if (has_part_attached(kind) && std::abs(m.opening - width) > kOpening) {
         fault("opening", name(kind), text(m.opening) + " m while holding a part of width " + text(width) + " m");
-      } else if (!is_holding(kind) && m.opening < width - kOpening) {
+      } else if (!has_part_attached(kind) && m.opening < width - kOpening) {
         fault("opening", name(kind), text(m.opening) + " m does not pass a part of width " + text(width) + " m");
       }
-      if (m.holding != is_holding(kind)) {
-        fault("holding", name(kind),
-              m.holding ? "says the part is held, it is not" : "says nothing is held, the part is");
+      if (m.attached != has_part_attached(kind)) {
+        fault("attachment", name(kind),
+              m.attached ? "says that the part is attached, it is not" : "says that nothing is attached, the part is");
       }
     }
     if (std::abs(motion(kTransit).opening - motion(kApproach).opening) > kOpening) {
-      fault("opening", name(kApproach), "the opening jumps between reach and approach");
+      fault("opening", name(kApproach), "the opening jumps between transit and approach");
     }
   }
 
@@ -128,7 +128,7 @@ class PickCheck {
   void check_joins() {
     const auto at_home = [this](const Eigen::VectorXd& q, int kind, const char* what) {
       const double by = gap_to_home(q);
-      if (by > kJoin) fault("discontinuous", name(kind), std::string(what) + ": a joint is off by " + text(by));
+      if (by > kMaxStep) fault("discontinuous", name(kind), std::string(what) + ": a joint is off by " + text(by));
     };
     at_home(motion(kTransit).positions.front(), kTransit, "does not start at home");
     at_home(motion(kRetreat).positions.back(), kRetreat, "does not end at home");

@@ -11,9 +11,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kSlack = 0.01;      // Relative, of limits.
-constexpr double kFitSlack = 0.05;   // Of the limit: stored accelerations against the velocities.
-constexpr double kOffCourse = 1e-3;  // After the whole motion [m], [rad].
+constexpr double kSlack = 0.01;      // Share by which limits may be exceeded.
+constexpr double kFitSlack = 0.05;   // Share of the limit by which stored accelerations may be off the velocities'.
+constexpr double kOffCourse = 1e-3;  // Largest error after the whole motion [m], [rad].
 constexpr double kSideways = 1e-3;   // [m/s]
 
 /// Velocity in the platform's frame: ahead, to the left, turning.

@@ -66,7 +66,7 @@ class DriveByCheck {
     const std::size_t stop = pick.stop;
     const auto stands = [this](const VectorXd& q, const Vector3d& wanted, const char* verb) {
       const bool there =
-          (base(q) - wanted).head<2>().norm() <= kJoin && std::abs(wrap_angle(q[2] - wanted.z())) <= kJoin;
+          (base(q) - wanted).head<2>().norm() <= kMaxStep && std::abs(wrap_angle(q[2] - wanted.z())) <= kMaxStep;
       if (!there) fault("route-ends", std::string(verb) + " at " + text(base(q)) + ", must be " + text(wanted));
     };
     stands(first, stop == 0 ? plan_.start : plan_.stops[stop - 1].pose, "starts");
@@ -97,7 +97,7 @@ class DriveByCheck {
     return false;
   }
 
-  /// Of the fingers at a time.
+  /// Opening of the fingers at a time.
   double opening(double t) const {
     const double share = (t - drive_by_.close_at) / (drive_by_.closed_at - drive_by_.close_at);
     return motion_.opening + std::clamp(share, 0.0, 1.0) * (width_ - motion_.opening);

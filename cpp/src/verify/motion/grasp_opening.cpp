@@ -8,10 +8,10 @@
 namespace mmgrasp::verify::detail {
 namespace {
 
-constexpr double kThickness = 0.02;  // Of the pads that stand for the fingers [m].
+constexpr double kThickness = 0.02;  // Thickness of the pads that stand for the fingers [m].
 constexpr double kPoint = 1e-3;      // Size of a pad's middle [m].
 constexpr double kStep = 5e-4;       // A pad comes in by such steps [m].
-constexpr int kHalvings = 12;        // Of the last step.
+constexpr int kHalvings = 12;        // How often the last step is halved.
 constexpr double kPlay = 3e-3;       // How far the width may be off the part's [m],
 constexpr double kShare = 0.1;       // or this share of it.
 

@@ -8,8 +8,8 @@ namespace mmgrasp::verify::detail {
 
 // What motions of the arm alone and of base and arm are asked for.
 
-constexpr double kJoin = 1e-6;  ///< Ends that must coincide [rad or m].
-constexpr double kRest = 1e-3;  ///< Speed that counts as rest [rad/s or m/s].
+constexpr double kMaxStep = 1e-6;  ///< Largest step where motions join [rad or m].
+constexpr double kRest = 1e-3;     ///< Speed that counts as rest [rad/s or m/s].
 
 /// Largest entry, whatever its sign.
 inline double largest_of(const Eigen::VectorXd& values) {
@@ -20,7 +20,7 @@ inline double largest_of(const Eigen::VectorXd& values) {
 inline void check_join(const Eigen::VectorXd& before, const Eigen::VectorXd& after, const std::string& where,
                        const std::string& what, Faults& faults) {
   const double by = largest_of(before - after);
-  if (by > kJoin) faults.push_back({"discontinuous", where, what + ": a joint is off by " + text(by)});
+  if (by > kMaxStep) faults.push_back({"discontinuous", where, what + ": a joint is off by " + text(by)});
 }
 
 /// "not-at-rest".

@@ -7,13 +7,13 @@
 namespace mmgrasp::verify::detail {
 namespace {
 
-constexpr double kJoin = 1e-6;         // [m, rad]
+constexpr double kSamePose = 1e-6;     // Poses that differ by no more are the same [m, rad].
 constexpr double kLimitSlack = 1e-5;   // [rad or m]; what limits and values printed to five digits lose
 constexpr double kLargest = 1e6;       // Beyond this a pose is no number to compute with [m, rad].
 constexpr double kMaxSteps = 1000000;  // Base poses of one leg.
 
 bool same_pose(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return (a - b).head<2>().norm() <= kJoin && std::abs(wrap_angle(a.z() - b.z())) <= kJoin;
+  return (a - b).head<2>().norm() <= kSamePose && std::abs(wrap_angle(a.z() - b.z())) <= kSamePose;
 }
 
 /// Whether the base can get straight from one pose to the next; headings are taken as they stand, not modulo a turn.
@@ -21,10 +21,10 @@ bool driveable(BaseKind base, const Eigen::Vector3d& from, const Eigen::Vector3d
   const Eigen::Vector3d step = to - from;
   const double driven = step.head<2>().norm(), turned = std::abs(step.z());
   if (base == BaseKind::omni) return true;
-  if (base == BaseKind::fixed) return driven <= kJoin && turned <= kJoin;
-  if (driven <= kJoin) return true;
+  if (base == BaseKind::fixed) return driven <= kSamePose && turned <= kSamePose;
+  if (driven <= kSamePose) return true;
   const double aside = std::abs(-std::sin(from.z()) * step.x() + std::cos(from.z()) * step.y());
-  return turned <= kJoin && aside <= kJoin;
+  return turned <= kSamePose && aside <= kSamePose;
 }
 
 /// Least time from rest to rest over a distance.
@@ -42,8 +42,8 @@ double piece_time(double driven, double turned, const BaseLimits& limits, double
 }
 
 /// Length and turning must be the poses', the duration that of a base which rests at each of them.
-bool figures_hold(const CheckedLegFigures& said, const std::vector<Eigen::Vector3d>& poses, BaseKind base,
-                  const BaseLimits& limits) {
+bool values_hold(const CheckedLegValues& said, const std::vector<Eigen::Vector3d>& poses, BaseKind base,
+                 const BaseLimits& limits) {
   double speed = limits.linear_velocity, turning_rate = limits.angular_velocity;
   if (base == BaseKind::diff_drive) {  // a turn on the spot drives the wheels at half their separation
     speed = std::min(speed, limits.wheel_velocity);
@@ -73,8 +73,8 @@ class RouteCheck {
                          "has " + std::to_string(plan_.route.size()) + " legs, " + std::to_string(plan_.stops.size()) +
                              " stops need " + std::to_string(legs)});
     }
-    if (!plan_.route_figures.empty() && plan_.route_figures.size() != plan_.route.size()) {
-      faults_.push_back({"route-figures", "route", "figures must be given for each leg"});
+    if (!plan_.leg_values.empty() && plan_.leg_values.size() != plan_.route.size()) {
+      faults_.push_back({"route-values", "route", "length, turning and duration must be given for each leg"});
     }
     for (std::size_t leg = 0; leg < plan_.route.size(); ++leg) {
       context_.monitor.report("route", static_cast<double>(leg) / static_cast<double>(plan_.route.size()));
@@ -106,9 +106,9 @@ class RouteCheck {
                              text(poses[i]) + " to " + text(poses[i + 1])});
       break;
     }
-    const bool stated = leg < plan_.route_figures.size();
-    if (stated && !figures_hold(plan_.route_figures[leg], poses, plan_.robot.base, plan_.robot.base_limits)) {
-      faults_.push_back({"route-figures", name(leg),
+    const bool stated = leg < plan_.leg_values.size();
+    if (stated && !values_hold(plan_.leg_values[leg], poses, plan_.robot.base, plan_.robot.base_limits)) {
+      faults_.push_back({"route-values", name(leg),
                          "length, turning or duration are not those of its poses at the limits of the base"});
     }
     for (const Eigen::Vector3d& pose : poses) {
@@ -195,7 +195,7 @@ void check_home(const Context& context, Judge& judge, Faults& faults) {
 bool check_workspace(const PlanToCheck& plan, const Eigen::Vector3d& pose, double radius, const std::string& where,
                      Faults& faults) {
   const double farthest = pose.head<2>().cwiseAbs().maxCoeff() + radius, most = plan.robot.base_limits.workspace;
-  if (farthest <= most + kJoin) return true;
+  if (farthest <= most + kSamePose) return true;
   faults.push_back({"base-workspace", where,
                     "the base at " + text(pose) + (radius > 0 ? ", off by up to " + text(radius) + " m," : "") +
                         " leaves its workspace of " + text(most) + " m"});

@@ -27,8 +27,8 @@ class MMGRASP_EXPORT AttachedChecker {
   /// check_edge(...).free. No point of what is checked (with CheckerOptions::attached_only: of the object) moves more
   /// than the workspace step.
   bool edge_is_free(const Eigen::VectorXd& q0, const Eigen::VectorXd& q1, const EdgeOptions& options);
-  /// The same, of ends that are free.
-  bool way_is_free(const Eigen::VectorXd& q0, const Eigen::VectorXd& q1, const EdgeOptions& options);
+  /// The same for an edge whose ends are known to be free: they are not checked again.
+  bool edge_stays_free(const Eigen::VectorXd& q0, const Eigen::VectorXd& q1, const EdgeOptions& options);
   /// As CollisionChecker::distance: the closest pair, or the one that overlaps most.
   DistanceResult distance(const Eigen::VectorXd& q);
   /// As mmgrasp::motion_bounds, of the robot and the object where it is held.

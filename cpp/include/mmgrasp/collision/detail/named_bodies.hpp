@@ -26,7 +26,7 @@ class MMGRASP_EXPORT AllowedPairs {
   AllowedPairs(const Robot& robot, const World& world);
 
   bool empty() const { return pairs_.empty(); }
-  bool operator()(const std::string& a, const std::string& b) const;  ///< In any order.
+  bool operator()(const std::string& a, const std::string& b) const;  ///< Whether the pair is listed, in either order.
   const std::set<World::NamePair>& pairs() const { return pairs_; }   ///< The smaller name first.
 
  private:

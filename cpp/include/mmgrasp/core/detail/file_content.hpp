@@ -7,9 +7,9 @@
 
 namespace mmgrasp::detail {
 
-constexpr std::uintmax_t kLargestText = 256'000'000;  ///< Of robots and what describes the arrays of a folder [bytes].
-constexpr std::uintmax_t kLargestFile = 4'000'000'000;  ///< Of meshes, clouds, octrees and roadmaps [bytes].
-constexpr std::uintmax_t kLargestMap = 64'000'000'000;  ///< Of maps of surfaces [bytes].
+constexpr std::uintmax_t kLargestText = 256'000'000;    ///< Robots, and what describes the arrays of a folder [bytes].
+constexpr std::uintmax_t kLargestFile = 4'000'000'000;  ///< Meshes, clouds, octrees and roadmaps [bytes].
+constexpr std::uintmax_t kLargestMap = 64'000'000'000;  ///< Maps of surfaces [bytes].
 
 /// The whole of a regular file. Throws IoError("<kind> '<path>': <reason>") when it is missing, a folder, a device or
 /// pipe (which would never end), unreadable, empty or larger than `most` bytes.

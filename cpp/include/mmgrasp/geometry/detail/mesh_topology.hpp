@@ -27,7 +27,9 @@ inline double edge_side(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
 
 /// Signed count of how often triangle (a, b, c) is crossed by the ray from the origin along the generic direction: +1
 /// when the ray leaves through its front, -1 when it enters, 0 when it misses. Neighbours decide alike on a shared
-/// edge, so that the sum over a closed mesh is its winding number around the origin.
+/// edge, so that the sum over a closed mesh is its winding number around the origin. The ray caster's test
+/// (geometry/hierarchy) cannot stand in for it: a ray through an edge meets both triangles there, which does no harm to
+/// a nearest hit but would count one crossing twice.
 int ray_crossing(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c);
 
 /// Direction of that ray, not normalised: z is 1.

@@ -26,7 +26,7 @@ enum class Motion { revolute, prismatic, spherical };
 /// One elementary motion on the way to the tip. Any rotation is Rz(a) Rx(b) Rz(c): the rotations about z on either
 /// side are folded into the angles of the motions before and after, so that only the one about x is left between two of
 /// them.
-/// In its own frame a motion goes about or along z.
+/// A fixed transform, then a motion about or along the z of the frame it leads to.
 struct Segment {
   double p[3] = {0, 0, 0};            ///< From the frame before, in that frame, before the rotation about x.
   double tilt_cos = 1, tilt_sin = 0;  ///< Cosine and sine of the rotation about x.

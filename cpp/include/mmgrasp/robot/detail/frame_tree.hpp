@@ -21,7 +21,7 @@ struct Drive {
 struct ElementaryMotion {
   int frame = 0, parent = 0;
   Rigid rest;            ///< The frame in its parent while the motion is at zero.
-  Eigen::Vector3d axis;  ///< In either of the two frames; nothing to a spherical motion.
+  Eigen::Vector3d axis;  ///< The same in both frames; a spherical motion ignores it.
   Motion motion = Motion::revolute;
   Drive drive;
 };

@@ -47,9 +47,9 @@ class MMGRASP_EXPORT ClosedFormSolver {
   ClosedForm form_;
   bool known_form_ = false;
   int locked_ = -1, values_ = 1;
-  double lower_ = 0, cell_ = 0;  ///< Of the locked joint's values.
+  double lower_ = 0, cell_ = 0;  ///< Least of the locked joint's values and the distance between two of them.
   Eigen::VectorXd middle_, q_;
-  std::vector<Eigen::VectorXd> kept_;  ///< Of one locked value; grows and is used again.
+  std::vector<Eigen::VectorXd> kept_;  ///< Solutions at one locked value; grows and is used again.
   IkWorkspace workspace_;
 };
 

@@ -11,7 +11,7 @@ namespace mmgrasp::detail {
 /// The turn about the axis h through the point p.
 Rigid turn_about(const Eigen::Vector3d& h, const Eigen::Vector3d& p, double angle);
 
-/// A chain of turning joints as the product of exponentials E_1 ... E_n = G, with axes as they lie when all joint
+/// A chain of revolute joints as the product of exponentials E_1 ... E_n = G, with axes as they lie when all joint
 /// values are zero, seen from the root: G = T_root_tip T_root_tip(0)^-1.
 struct Screws {
   static constexpr int kMaxJoints = 7;
@@ -20,11 +20,11 @@ struct Screws {
   Rigid tip;  ///< T_world_tip at zero.
 };
 
-/// True when each column moves one joint that turns or slides (no mimic, planar or floating joints on the way to the
+/// True when each column moves one revolute or prismatic joint (no mimic, planar or floating joints on the way to the
 /// tip).
 bool one_joint_a_column(const JointGroup& group);
 
-/// Empty (size 0) unless the group has no base and six or seven turning joints, each with its own column.
+/// Empty (size 0) unless the group has no base and six or seven revolute joints, each with its own column.
 Screws screws_of(const JointGroup& group);
 
 /// Configurations of every branch; in a singularity that leaves a joint free, of one of its values.
@@ -35,7 +35,7 @@ struct Branches {
   bool free = false;  ///< A joint could take any value.
 };
 
-/// Which closed form fits a chain of six turning joints.
+/// Which closed form fits a chain of six revolute joints.
 ///  spherical: axes 4, 5, 6 meet in one point (Pieper), and among the first three two neighbours meet or are parallel;
 ///  parallel:  axes 2, 3, 4 are parallel, 5 and 6 meet;
 ///  either also seen from the tip (`reversed`).

@@ -18,7 +18,7 @@ struct MMGRASP_EXPORT GraspCandidate {
   int opening = 0;
   double cost = 0;
   std::vector<Eigen::VectorXd> starts, goals;
-  JointMetric metric;    ///< Of the configurations.
+  JointMetric metric;    ///< Measures distances between configurations.
   int turned_goals = 0;  ///< How many of the goals are whole turns of others.
   /// Proven: paths with this grasp begin and end in these arm postures, in any of their turns, and in no others.
   bool all_postures = false;

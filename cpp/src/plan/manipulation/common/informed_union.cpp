@@ -10,7 +10,7 @@ namespace mmgrasp::detail {
 namespace {
 
 constexpr int kMaxTries = 10000;           // Draws before the union counts as too thin.
-constexpr double kLeastDetour = 0.1;       // Of draw_around(), in addition to the factor [rad or m].
+constexpr double kLeastDetour = 0.1;       // What draw_around() adds to the factor at least [rad or m].
 constexpr double kThin = 1e-9;             // Ellipsoids whose c exceeds c_min by less than this share have no inside.
 constexpr int kRandomGuesses = 64;         // Random ellipsoids tested before all of them are.
 constexpr double kRelativeScanCost = 0.1;  // Time to test one grasp, by that of one draw.

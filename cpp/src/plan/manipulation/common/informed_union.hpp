@@ -62,7 +62,7 @@ class MMGRASP_EXPORT InformedUnion {
   void append_images(const Pair& nearest);
   /// The goal's image that a pair's ellipsoid ends at; valid until the next call where angles wrap.
   const double* goal_of(const Pair& pair);
-  /// Of all images of a point of the pair's set, only one in one of the pair's ellipsoids is so.
+  /// True for exactly one of all images of a point of the pair's set, one that lies in one of the pair's ellipsoids.
   bool is_representative(const Pair& pair, const double* q);
   double ellipsoid_volume(const Pair& pair) const;
   void draw_ellipsoid(Rng& rng, const Pair& pair, double c, double* q);

@@ -15,7 +15,7 @@ using Configurations = std::vector<Eigen::VectorXd>;
 
 constexpr std::size_t kMaxPairs = 64;          // Pairs of turns for each start and goal,
 constexpr std::size_t kMaxPairsUnbounded = 8;  // ... and while no path bounds them.
-constexpr double kSame = 1e-9;                 // Nearer configurations are the same [rad or m].
+constexpr double kSameConfiguration = 1e-9;    // Nearer configurations are the same [rad or m].
 
 /// Turns of one joint at the start and at the goal.
 struct TurnPair {
@@ -37,11 +37,12 @@ std::vector<TurnPair> needed_pairs(const std::vector<double>& starts, const std:
   for (const double a : starts)
     for (const double b : goals)
       all.push_back({a, b, static_cast<int>(std::lround((b - a - (goals.front() - starts.front())) / kTwoPi))});
-  // Of a difference, the start's own turn first, so that most pairs share it; then the pair with most room.
+  // Among equal differences the start's own turn comes first, so that most pairs share it; then the pair with most
+  // room.
   std::sort(all.begin(), all.end(), [&](const TurnPair& a, const TurnPair& b) {
     const double a_off = std::abs(a.start - own_start), b_off = std::abs(b.start - own_start);
     if (a.turns != b.turns) return a.turns < b.turns;
-    return std::abs(a_off - b_off) > kSame ? a_off < b_off : a.room(lower, upper) > b.room(lower, upper);
+    return std::abs(a_off - b_off) > kSameConfiguration ? a_off < b_off : a.room(lower, upper) > b.room(lower, upper);
   });
   std::vector<TurnPair> out;
   for (auto first = all.begin(), last = first; first != all.end(); first = last) {
@@ -82,8 +83,9 @@ bool any_turns(const std::vector<Values>& all) {
 }
 
 void add_new(Configurations& all, const Eigen::VectorXd& q) {
-  const bool known = std::any_of(
-      all.begin(), all.end(), [&](const Eigen::VectorXd& other) { return (other - q).cwiseAbs().maxCoeff() < kSame; });
+  const bool known = std::any_of(all.begin(), all.end(), [&](const Eigen::VectorXd& other) {
+    return (other - q).cwiseAbs().maxCoeff() < kSameConfiguration;
+  });
   if (!known) all.push_back(q);
 }
 

@@ -41,7 +41,8 @@ class GraspGraphChecks {
 
   /// Steps not known to be free for the object in hand, of paths not yet found blocked.
   std::vector<Item> unknown_steps() const;
-  /// Of these, links and edges of the roadmap not known to be free for the robot alone, each once.
+  /// Those of the unknown steps that are links and edges of the roadmap not known to be free for the robot alone, each
+  /// once.
   std::vector<Item> unknown_steps_for_robot() const;
   /// Whether a step of the path is known to be blocked for the robot alone.
   bool robot_blocks(const GraspGraph& graph) const;
@@ -49,7 +50,7 @@ class GraspGraphChecks {
   /// Steps found blocked block their paths; those found free are recorded only if `complete`, that is, if nothing about
   /// them is left to check.
   void record_steps(const std::vector<Item>& items, const std::vector<char>& answers, bool complete);
-  /// In one thread when there are fewer than `min_parallel` items.
+  /// Calls `work` for each item; runs in one thread when there are fewer than `min_parallel` items.
   void run(std::size_t count, std::size_t min_parallel, const std::function<void(std::size_t, int)>& work);
 
   GraspGraph& graph_of(const Item& item) const { return *(*paths_)[item.path]; }

@@ -18,7 +18,8 @@ class MMGRASP_EXPORT NearVertices {
   NearVertices(const GraspTrees& trees, InformedUnion& informed, const RrtStarMgOptions& options,
                const RrtStarMgTuning& tuning);
 
-  /// Of one tree, and of all trees of a side. `nearest` is among them however far it is. `out` is overwritten.
+  /// Vertices near `q`, of one tree or of all trees of a side. `nearest` is among them however far it is. `out` is
+  /// overwritten.
   void in_tree(int tree, const double* q, int nearest, std::vector<GraspTrees::Near>& out) const;
   void on_side(int side, const double* q, int nearest, std::vector<GraspTrees::Near>& out) const;
 

@@ -52,7 +52,7 @@ class MMGRASP_EXPORT PathShortcutting {
   const Incumbent& incumbent_;
   const RrtStarMgTuning& tuning_;
   TreeConnections::Branches path_;  ///< Scratch.
-  std::vector<int> vertices_;       ///< Of the path to be improved, from root to root ...
+  std::vector<int> vertices_;       ///< The path to be improved, from root to root ...
   std::size_t crossing_ = 0;        ///< ... so many of them in the start's tree.
   std::vector<int> made_;           ///< Scratch: configurations.
   Eigen::VectorXd moves_, q_;       ///< Scratch.

@@ -32,7 +32,7 @@ class MMGRASP_EXPORT TreeConnections {
   const Connection& connection(int index) const { return connections_[index]; }
   const BestPath& best(int grasp) const { return best_[grasp]; }
   bool any(int grasp) const { return last_[grasp] >= 0; }
-  /// Of the path through this connection as the trees are now.
+  /// Cost of the path through this connection as the trees are now.
   double cost(int connection) const;
 
   /// Connects two vertices, one of each tree of a grasp, in either order. best() changes with the next update().

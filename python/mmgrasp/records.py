@@ -1,4 +1,11 @@
-"""The dicts that results of the C++ library hold, as types: what keys there are, and what they mean."""
+"""The dicts that results of the C++ library hold, as types: what keys there are, and what they mean.
+
+from mmgrasp.records import RobotReport
+
+def print_meshes(report: RobotReport) -> None:
+    for mesh in report["meshes"]:
+        print(mesh["path"], mesh["triangles"])
+"""
 
 from __future__ import annotations
 
@@ -119,25 +126,6 @@ class StageRow(TypedDict):
     first_seconds: float  # of its first better path, since the call began
     last_seconds: float
     cost: float  # of its last one
-
-
-class ManipulationStats(TypedDict):
-    """What a search took: `ManipulationResult.stats`."""
-
-    ik_seconds: float
-    roadmap_seconds: float
-    search_seconds: float
-    graph_searches: int
-    nodes_opened: int  # pushed to the open lists of graph searches (prm_star_mg without lazy_grasps)
-    grasps_searched: int  # for which prm_star_mg searched a roadmap
-    roadmap_cost: float  # of prm_star_mg's best path before shortening; 0: none is cheaper than the first path
-    roadmap_bound: float  # no path over prm_star_mg's roadmap, or straight, costs less
-    postures_bound: float  # no path between the arm postures that were found costs less
-    edges_checked_robot: int  # for the robot alone, shared by all grasps of an opening
-    edges_checked_attached: int  # for the attached object
-    samples: int  # that rrt_star_mg drew or reassigned
-    vertices: int  # of rrt_star_mg's trees, removed ones included
-    stages: dict[str, StageRow]  # by name, in the order of their first improvement
 
 
 class DriveByEventRow(TypedDict):

@@ -18,14 +18,14 @@ Plan = dict[str, Any]
 _CLOSE = 1e-6  # [m], [rad]
 
 
-def check_figures(plan: Plan) -> list[checks.Fault]:
+def check_consistency(plan: Plan) -> list[checks.Fault]:
     """Faults of a solved plan whose form is that of the schema."""
     rules = (_hand, _options, _trays, _regions, _intersections, _stops, _route, _in_passing, _answer, _premises)
-    return [checks.Fault("bad-figures", where, message) for rule in rules for where, message in rule(plan)]
+    return [checks.Fault("wrong-values", where, message) for rule in rules for where, message in rule(plan)]
 
 
 Found = Iterator[tuple[str, str]]
-_SETS = ("intersections", "lost_intersections")
+_SETS = ("intersections", "too_small_intersections")
 
 
 def _hand(plan: Plan) -> Found:
@@ -124,7 +124,7 @@ def _intersections(plan: Plan) -> Found:
             shared = int(np.logical_and.reduce(layers).sum()) if layers else 0
             if not layers or shared != said["cells"]:
                 yield where, f"says {said['cells']} cells, its trays share {shared}"
-            elif (said["radius"] < least - _CLOSE) != (key == "lost_intersections"):
+            elif (said["radius"] < least - _CLOSE) != (key == "too_small_intersections"):
                 yield where, f"a disc of {said['radius']:g} m, the positioning uncertainty is {least:g} m"
 
 

@@ -35,7 +35,10 @@ HARMLESS: Harmless = {
     "drive_by.motions": ("dropped, emptied", "each is checked by itself, and the plan holds without it"),
     "drive_by.motions[]": ("removed", "as for the list"),
     "drive_by.motions[].accelerations[]": ("swapped", "nearly those of the next sample"),
-    "drive_by.motions[].accelerations[][]": ("more, less", "a hundredth of a limit"),
+    "drive_by.motions[].accelerations[][]": (
+        "more, less, zero",
+        "a hundredth of a limit; zero where it was less than a twentieth of one, as far as those of the velocities may be off",
+    ),
 }
 """Changes that may go unnoticed, and why they do no harm."""
 

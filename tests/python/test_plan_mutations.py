@@ -31,6 +31,12 @@ def test_changes_of_a_plan_are_refused(small_plan: mg.part_supply.ScenarioPlan, 
     assert result.tried > 250
     assert not unexplained(result, plan_mutations.HARMLESS)
     assert len(result.left) <= 0.05 * result.tried  # of all: below 2 %
+    limits = plan["scenario"]["arm"]["acceleration_limits"]
+    for change in result.left:
+        if change.kind == "zero" and change.field[0] == "drive_by":
+            _, _, motion, _, sample, column = change.field
+            was = plan["drive_by"]["motions"][motion]["accelerations"][sample][column]
+            assert column >= 3 and abs(was) <= 0.05 * limits[column - 3], change
 
 
 @pytest.mark.slow

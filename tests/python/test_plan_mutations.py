@@ -34,7 +34,7 @@ def test_changes_of_a_plan_are_refused(small_plan: mg.part_supply.ScenarioPlan, 
     limits = plan["scenario"]["arm"]["acceleration_limits"]
     for change in result.left:
         if change.kind == "zero" and change.field[0] == "drive_by":
-            _, _, motion, _, sample, column = change.field
+            motion, sample, column = (int(change.field[i]) for i in (2, 4, 5))
             was = plan["drive_by"]["motions"][motion]["accelerations"][sample][column]
             assert column >= 3 and abs(was) <= 0.05 * limits[column - 3], change
 

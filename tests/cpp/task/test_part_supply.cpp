@@ -18,7 +18,7 @@ const ReachDatabase& database() {
   return shared;
 }
 
-/// The plan as the independent checker wants it: it shares no code with the planners.
+/// The plan as the independent checker wants it (what the two share: docs/methods/verify.md).
 verify::PlanToCheck to_check(const PartSupplyProblem& problem, const PartSupplyPlan& plan) {
   verify::PlanToCheck check{source_of(problem.robot)};
   check.planned_robot = written_source(problem.robot);

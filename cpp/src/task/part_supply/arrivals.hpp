@@ -15,8 +15,9 @@ MMGRASP_EXPORT StopSamples count_arrivals(const PartSupplyProblem& problem, cons
                                           const Monitor& monitor);
 
 /// Moves each stop to where most arrivals serve all its parts, as far as the cells that its trays share go and hold a
-/// disc of the positioning uncertainty; no trays change their stop. Middles of cells are compared, first all by few
-/// arrivals, then the best by more; a stop stays where it is unless a better pose passes check_robustness().
+/// disc of the positioning uncertainty; no trays change their stop. Middles of cells, a cell and a half apart, are
+/// compared, first all by few arrivals, then the best by more; a stop stays where it is unless a better pose passes
+/// check_robustness().
 MMGRASP_EXPORT void seek_likely_poses(const PartSupplyProblem& problem, const BasePoseEvaluator& evaluator,
                                       const BaseGrid& grid, const std::vector<BaseRegion>& regions,
                                       std::vector<Stop>& stops, double required_rate, const Monitor& monitor);

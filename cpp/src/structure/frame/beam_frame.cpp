@@ -6,7 +6,6 @@
 #include "mmgrasp/core/error.hpp"
 #include "structure/frame/beam_element.hpp"
 #include "structure/node_pieces.hpp"
-#include "structure/section_axes.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -80,14 +79,11 @@ void BeamFrame::check() const {
 }
 
 double BeamFrame::length(int member) const {
-  const auto [a, b] = members.at(member).nodes;
-  return (nodes.at(b) - nodes.at(a)).norm();
+  return detail::member_length<double>(*this, member);
 }
 
 Eigen::Matrix3d BeamFrame::R_object_member(int member) const {
-  const auto [a, b] = members.at(member).nodes;
-  const Vector3d along = nodes.at(b) - nodes.at(a), &towards = members[member].y_towards;
-  return towards.isZero(0) ? detail::section_axes(along) : detail::axes_across(along, towards);
+  return detail::member_axes<double>(*this, member);
 }
 
 double BeamFrame::mass() const {
@@ -135,8 +131,9 @@ Eigen::MatrixXd BeamFrame::stiffness() const {
   const auto size = 6 * static_cast<Eigen::Index>(nodes.size());
   Eigen::MatrixXd K = Eigen::MatrixXd::Zero(size, size);
   for (std::size_t i = 0; i < members.size(); ++i) {
-    const detail::BeamElement element(members[i], length(static_cast<int>(i)), R_object_member(static_cast<int>(i)));
-    const detail::Matrix12d k = element.stiffness_in_object();
+    const int member = static_cast<int>(i);
+    const detail::Matrix12<double> k =
+        detail::BeamElement<double>(members[i], length(member), R_object_member(member)).stiffness_in_object();
     for (int p = 0; p < 2; ++p) {
       for (int q = 0; q < 2; ++q) {
         K.block<6, 6>(6 * members[i].nodes[p], 6 * members[i].nodes[q]) += k.block<6, 6>(6 * p, 6 * q);

@@ -3,30 +3,28 @@
 #include <Eigen/Cholesky>
 #include <Eigen/SparseCholesky>
 #include <cmath>
+#include <type_traits>
 
-#include "mmgrasp/core/error.hpp"
+#include "structure/frame/wide.hpp"
 
 namespace mmgrasp::detail {
 namespace {
 
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-
-constexpr int kMostDense = 300;        // unknowns; above, most of the matrix is zero and worth skipping
-constexpr double kLeastPivot = 1e-12;  // of the matrix scaled to ones on its diagonal
-
-[[noreturn]] void refuse() {
-  throw InvalidInput(
-      "supports: unstable, they leave the frame movable; clamp it, or hinder all six movements together");
-}
+constexpr int kMostDense = 300;  // unknowns; above, most of the matrix is zero and worth skipping
+// Of the matrix scaled to ones on its diagonal. What can move leaves a pivot of some roundings: 1e-16 and 1e-34 each.
+template <class Scalar>
+constexpr double kLeastPivot = std::is_same_v<Scalar, double> ? 1e-12 : 1e-29;
 
 }  // namespace
 
-MatrixXd BeamEquations::solve(const std::vector<bool>& fixed) const {
+template <class Scalar>
+std::optional<typename BeamEquations<Scalar>::Matrix> BeamEquations<Scalar>::solve(
+    const std::vector<bool>& fixed) const {
   std::vector<int> column(fixed.size(), -1);
   int free = 0;
   for (std::size_t i = 0; i < fixed.size(); ++i) column[i] = fixed[i] ? -1 : free++;
-  VectorXd scale = VectorXd::Zero(free);  // displacements and rotations have other units
+  using Vector = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
+  Vector scale = Vector::Zero(free);  // displacements and rotations have other units
   const auto each = [&](const auto& entry) {
     for (const auto& [K, nodes] : elements_) {
       for (int p = 0; p < 12; ++p) {
@@ -38,47 +36,42 @@ MatrixXd BeamEquations::solve(const std::vector<bool>& fixed) const {
       }
     }
   };
-  each([&](int i, int j, double k) { scale(i) += i == j ? k : 0; });
+  each([&](int i, int j, const Scalar& k) {
+    if (i == j) scale(i) += k;
+  });
   scale = scale.cwiseSqrt().cwiseInverse().eval();
-  MatrixXd right(free, loads.cols());
+  Matrix right(free, loads.cols());
   for (std::size_t i = 0; i < fixed.size(); ++i) {
     if (column[i] >= 0) right.row(column[i]) = scale(column[i]) * loads.row(static_cast<Eigen::Index>(i));
   }
-  MatrixXd solution;
-  if (free <= kMostDense) {
-    MatrixXd K = MatrixXd::Zero(free, free);
-    each([&](int i, int j, double k) { K(i, j) += scale(i) * k * scale(j); });
-    const Eigen::LLT<MatrixXd> factor(K);
+  Matrix solution;
+  if (std::is_same_v<Scalar, double> && free <= kMostDense) {
+    Matrix K = Matrix::Zero(free, free);
+    each([&](int i, int j, const Scalar& k) { K(i, j) += scale(i) * k * scale(j); });
+    const Eigen::LLT<Matrix> factor(K);
     if (free > 0 &&
-        (factor.info() != Eigen::Success || factor.matrixLLT().diagonal().minCoeff() < std::sqrt(kLeastPivot)))
-      refuse();
+        (factor.info() != Eigen::Success || factor.matrixLLT().diagonal().minCoeff() < std::sqrt(kLeastPivot<Scalar>)))
+      return {};
     solution = factor.solve(right);
   } else {
-    std::vector<Eigen::Triplet<double>> entries;
-    each([&](int i, int j, double k) { entries.emplace_back(i, j, scale(i) * k * scale(j)); });
-    Eigen::SparseMatrix<double> K(free, free);
+    std::vector<Eigen::Triplet<Scalar>> entries;
+    each([&](int i, int j, const Scalar& k) {
+      if (i >= j) entries.emplace_back(i, j, scale(i) * k * scale(j));
+    });
+    Eigen::SparseMatrix<Scalar> K(free, free);
     K.setFromTriplets(entries.begin(), entries.end());
-    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(K);
-    if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > kLeastPivot)) refuse();
+    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<Scalar>> factor(K);
+    if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > kLeastPivot<Scalar>)) return {};
     solution = factor.solve(right);
   }
-  MatrixXd out = MatrixXd::Zero(loads.rows(), loads.cols());
+  Matrix out = Matrix::Zero(loads.rows(), loads.cols());
   for (std::size_t i = 0; i < fixed.size(); ++i) {
     if (column[i] >= 0) out.row(static_cast<Eigen::Index>(i)) = scale(column[i]) * solution.row(column[i]);
   }
   return out;
 }
 
-MatrixXd BeamEquations::times_stiffness(const MatrixXd& displacements) const {
-  MatrixXd out = MatrixXd::Zero(displacements.rows(), displacements.cols());
-  for (const auto& [K, nodes] : elements_) {
-    for (int p = 0; p < 2; ++p) {
-      for (int q = 0; q < 2; ++q) {
-        out.middleRows<6>(6 * nodes[p]) += K.block<6, 6>(6 * p, 6 * q) * displacements.middleRows<6>(6 * nodes[q]);
-      }
-    }
-  }
-  return out;
-}
+template class BeamEquations<double>;
+template class BeamEquations<Wide>;
 
 }  // namespace mmgrasp::detail

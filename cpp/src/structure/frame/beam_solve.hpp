@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -9,20 +10,24 @@
 
 namespace mmgrasp::detail {
 
-/// Stiffness and loads of a frame, and its displacements where some are fixed to zero.
+/// Stiffness and loads of a frame, and its displacements where some are fixed to zero. `Scalar` is double or Wide.
+template <class Scalar>
 class BeamEquations {
  public:
-  BeamEquations(int size, int load_cases) : loads(Eigen::MatrixXd::Zero(size, load_cases)) {}
+  using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
 
-  void add(const Matrix12d& stiffness, const std::array<int, 2>& nodes) { elements_.emplace_back(stiffness, nodes); }
-  /// One factorisation, all load cases. Throws InvalidInput when the fixed ones leave the frame movable.
-  Eigen::MatrixXd solve(const std::vector<bool>& fixed) const;
-  Eigen::MatrixXd times_stiffness(const Eigen::MatrixXd& displacements) const;
+  BeamEquations(int size, int load_cases) : loads(Matrix::Zero(size, load_cases)) {}
 
-  Eigen::MatrixXd loads;
+  void add(const Matrix12<Scalar>& stiffness, const std::array<int, 2>& nodes) {
+    elements_.emplace_back(stiffness, nodes);
+  }
+  /// One factorisation, all load cases; none when the fixed ones leave the frame movable, as far as `Scalar` can tell.
+  std::optional<Matrix> solve(const std::vector<bool>& fixed) const;
+
+  Matrix loads;
 
  private:
-  std::vector<std::pair<Matrix12d, std::array<int, 2>>> elements_;
+  std::vector<std::pair<Matrix12<Scalar>, std::array<int, 2>>> elements_;
 };
 
 }  // namespace mmgrasp::detail

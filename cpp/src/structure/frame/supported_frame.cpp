@@ -7,12 +7,13 @@
 #include "mmgrasp/core/error.hpp"
 #include "structure/frame/beam_element.hpp"
 #include "structure/frame/beam_solve.hpp"
+#include "structure/frame/load_balance.hpp"
 #include "structure/frame/longest_point.hpp"
+#include "structure/frame/wide.hpp"
 
 namespace mmgrasp {
 namespace {
 
-using detail::BeamElement;
 using detail::Curve;
 using detail::Vector12d;
 using Eigen::MatrixXd;
@@ -27,12 +28,20 @@ Eigen::Vector4d factors(const Vector3d& gravity) {
 
 /// A part of a member between nodes and supports.
 struct Piece {
-  BeamElement element;
   int member = 0;
-  double from = 0;  ///< Where it begins on the member [m].
+  double from = 0, to = 0;  ///< On the member [m].
   std::array<int, 2> nodes{};
+  Eigen::Matrix3d R_object_member;
+  double line_density = 0;  ///< [kg/m]
   std::array<Curve, kLoads> curves{};
+  Eigen::Matrix<double, 12, kLoads> end_forces{};  ///< What the nodes do to its ends, in the member's frame.
+
+  double length() const { return to - from; }
 };
+
+/// What is known of an answer: that the supports leave the frame movable, that its reactions do not carry its loads, or
+/// that they do.
+enum class Verdict { movable, inexact, exact };
 
 }  // namespace
 
@@ -44,9 +53,9 @@ struct SupportedFrame::Data {
   MatrixXd reactions;      ///< 6 x supports rows.
 
   void divide(const std::vector<BeamSupport>& supports);
-  void solve(const std::vector<BeamSupport>& supports);
+  template <class Scalar>
+  Verdict solve(const std::vector<BeamSupport>& supports);
   const Piece& piece(int member, double distance) const;
-  Vector12d ends(const Piece& piece, const Eigen::Vector4d& load) const;
   BeamExtreme longest(const Eigen::Vector4d& load) const;
   double stress(const Piece& piece, const Vector12d& end_forces, const Vector3d& weight, double x) const;
   void find_stress(const Eigen::Vector4d& load, const Vector3d& gravity, BeamState& state) const;
@@ -77,7 +86,12 @@ SupportedFrame::SupportedFrame(const BeamFrame& frame, const std::vector<BeamSup
   auto data = std::make_shared<Data>();
   data->frame = frame;
   data->divide(supports);
-  data->solve(supports);
+  Verdict verdict = data->solve<double>(supports);
+  if (verdict != Verdict::exact) verdict = data->solve<detail::Wide>(supports);
+  require(verdict != Verdict::movable, "supports", "unstable",
+          "they leave the frame movable; clamp it, or hinder all six movements together");
+  require(verdict != Verdict::inexact, "members", "too unlike each other",
+          "34 decimals do not tell how a frame of so short or so soft members beside others bends; join short ones");
   data_ = data;
 }
 
@@ -106,6 +120,8 @@ void SupportedFrame::Data::divide(const std::vector<BeamSupport>& supports) {
       node = nodes++;
       cuts[support.member].emplace_back(at, node);
     }
+    require(std::find(support_nodes.begin(), support_nodes.end(), node) == support_nodes.end(),
+            "supports[" + std::to_string(i) + "]", "at the place of another", "two supports must not share a place");
     support_nodes.push_back(node);
   }
   for (int i = 0; i < members; ++i) {
@@ -113,53 +129,91 @@ void SupportedFrame::Data::divide(const std::vector<BeamSupport>& supports) {
     cuts[i].emplace_back(frame.length(i), frame.members[i].nodes[1]);
     std::pair<double, int> last{0, frame.members[i].nodes[0]};
     for (const auto& cut : cuts[i]) {
-      pieces.push_back({BeamElement(frame.members[i], cut.first - last.first, frame.R_object_member(i)),
-                        i,
+      const BeamMember& member = frame.members[i];
+      pieces.push_back({i,
                         last.first,
-                        {last.second, cut.second}});
+                        cut.first,
+                        {last.second, cut.second},
+                        frame.R_object_member(i),
+                        member.material.density * member.section.area});
       last = cut;
     }
   }
   displacements = MatrixXd::Zero(6 * nodes, kLoads);
 }
 
-void SupportedFrame::Data::solve(const std::vector<BeamSupport>& supports) {
-  detail::BeamEquations equations(static_cast<int>(displacements.rows()), kLoads);
-  for (const Piece& piece : pieces) {
-    equations.add(piece.element.stiffness_in_object(), piece.nodes);
-    for (int axis = 0; axis < 3; ++axis) {
-      const Vector12d loads = piece.element.end_loads(piece.element.line_density() * Vector3d::Unit(axis));
-      for (int end = 0; end < 2; ++end)
-        equations.loads.block<6, 1>(6 * piece.nodes[end], axis) += loads.segment<6>(6 * end);
-    }
-  }
+template <class Scalar>
+Verdict SupportedFrame::Data::solve(const std::vector<BeamSupport>& supports) {
+  using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
+  const auto weight = [](const Piece& piece, int load) -> Vector3 {
+    return load < 3 ? Vector3(Scalar(piece.line_density) * Vector3::Unit(load)) : Vector3(Vector3::Zero());
+  };
+  const auto nodes = static_cast<std::size_t>(displacements.rows() / 6);
+  std::vector<Vector3> places(nodes);
+  for (std::size_t i = 0; i < frame.nodes.size(); ++i) places[i] = frame.nodes[i].cast<Scalar>();
+  detail::BeamEquations<Scalar> equations(static_cast<int>(displacements.rows()), kLoads);
   for (const NodeLoad& load : frame.loads) {
     for (int axis = 0; axis < 3; ++axis) equations.loads(6 * load.node + axis, axis) += load.mass;
-    equations.loads.block<3, 1>(6 * load.node, 3) += load.force;
-    equations.loads.block<3, 1>(6 * load.node + 3, 3) += load.moment;
+    equations.loads.template block<3, 1>(6 * load.node, 3) += load.force.cast<Scalar>();
+    equations.loads.template block<3, 1>(6 * load.node + 3, 3) += load.moment.cast<Scalar>();
+  }
+  auto forces = (-equations.loads).eval();  // what holds the nodes
+  std::vector<detail::BeamElement<Scalar>> elements;
+  std::vector<Eigen::Matrix<Scalar, 3, 3>> axes;
+  for (const Piece& piece : pieces) {
+    const BeamMember& member = frame.members[piece.member];
+    axes.push_back(detail::member_axes<Scalar>(frame, piece.member));
+    const bool last = piece.nodes[1] == member.nodes[1];
+    const Scalar end = last ? detail::member_length<Scalar>(frame, piece.member) : Scalar(piece.to);
+    if (!last) places[piece.nodes[1]] = places[member.nodes[0]] + end * axes.back().col(0);
+    elements.emplace_back(member, end - Scalar(piece.from), axes.back());
+    equations.add(elements.back().stiffness_in_object(), piece.nodes);
+    for (int axis = 0; axis < 3; ++axis) {
+      const detail::Vector12<Scalar> loads = elements.back().end_loads(weight(piece, axis));
+      for (int k = 0; k < 2; ++k)
+        equations.loads.template block<6, 1>(6 * piece.nodes[k], axis) += loads.template segment<6>(6 * k);
+    }
   }
   std::vector<bool> fixed(displacements.rows(), false);
   for (std::size_t i = 0; i < supports.size(); ++i) {
     for (int k = 0; k < 6; ++k)
       fixed[6 * support_nodes[i] + k] = fixed[6 * support_nodes[i] + k] || supports[i].fixed[k];
   }
-  displacements = equations.solve(fixed);
-  const MatrixXd forces = equations.times_stiffness(displacements) - equations.loads;
-  reactions = MatrixXd::Zero(6 * static_cast<Eigen::Index>(supports.size()), kLoads);
-  for (std::size_t i = 0; i < supports.size(); ++i) {
-    const auto same = std::find(support_nodes.begin(), support_nodes.end(), support_nodes[i]) - support_nodes.begin();
-    require(same == static_cast<long>(i), "supports[" + std::to_string(i) + "]", "at the place of another",
-            "two supports must not share a place");
-    for (int k = 0; k < 6; ++k) {
-      if (supports[i].fixed[k]) reactions.row(6 * static_cast<long>(i) + k) = forces.row(6 * support_nodes[i] + k);
-    }
-  }
-  for (Piece& piece : pieces) {
+  const auto moved = equations.solve(fixed);
+  if (!moved) return Verdict::movable;
+  displacements = moved->template cast<double>();
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    Piece& piece = pieces[i];
     for (int load = 0; load < kLoads; ++load) {
-      const Vector3d weight = load < 3 ? piece.element.line_density() * Vector3d::Unit(load) : Vector3d::Zero().eval();
-      piece.curves[load] = piece.element.displacement(ends(piece, Eigen::Vector4d::Unit(load)), weight);
+      detail::Vector12<Scalar> ends;
+      for (int k = 0; k < 2; ++k)
+        ends.template segment<6>(6 * k) = moved->template block<6, 1>(6 * piece.nodes[k], load);
+      piece.curves[load] = elements[i].displacement(ends, weight(piece, load));
+      const detail::Vector12<Scalar> at_ends = elements[i].end_forces(ends, weight(piece, load));
+      piece.end_forces.col(load) = at_ends.template cast<double>();
+      for (int k = 0; k < 4; ++k) {
+        forces.template block<3, 1>(6 * piece.nodes[k / 2] + 3 * (k % 2), load) +=
+            axes[i] * at_ends.template segment<3>(3 * k);
+      }
     }
   }
+  reactions = MatrixXd::Zero(6 * static_cast<Eigen::Index>(supports.size()), kLoads);
+  bool balanced = true;
+  for (int load = 0; load < kLoads; ++load) {
+    detail::LoadBalance<Scalar> balance;
+    for (std::size_t i = 0; i < nodes; ++i)
+      balance.add(places[i] - places[support_nodes[0]], equations.loads.template block<6, 1>(6 * static_cast<long>(i), load));
+    for (std::size_t i = 0; i < supports.size(); ++i) {
+      Eigen::Matrix<Scalar, 6, 1> held = forces.template block<6, 1>(6 * support_nodes[i], load);
+      for (int k = 0; k < 6; ++k) {
+        if (!supports[i].fixed[k]) held(k) = Scalar(0);
+      }
+      reactions.block<6, 1>(6 * static_cast<long>(i), load) = held.template cast<double>();
+      balance.add(places[support_nodes[i]] - places[support_nodes[0]], held);
+    }
+    balanced = balanced && balance.holds();
+  }
+  return balanced ? Verdict::exact : Verdict::inexact;
 }
 
 const Piece& SupportedFrame::Data::piece(int member, double distance) const {
@@ -175,12 +229,6 @@ const Piece& SupportedFrame::Data::piece(int member, double distance) const {
   return *found;
 }
 
-Vector12d SupportedFrame::Data::ends(const Piece& piece, const Eigen::Vector4d& load) const {
-  Vector12d out;
-  for (int end = 0; end < 2; ++end) out.segment<6>(6 * end) = displacements.middleRows<6>(6 * piece.nodes[end]) * load;
-  return out;
-}
-
 BeamExtreme SupportedFrame::Data::longest(const Eigen::Vector4d& load) const {
   std::vector<Curve> curves;
   curves.reserve(pieces.size());
@@ -193,7 +241,7 @@ BeamExtreme SupportedFrame::Data::longest(const Eigen::Vector4d& load) const {
   }
   const auto place = [&](std::size_t i, double at) {
     out.member = pieces[i].member;
-    out.distance = pieces[i].from + at * pieces[i].element.length();
+    out.distance = pieces[i].from + at * pieces[i].length();
   };
   for (std::size_t i = 0; i < pieces.size(); ++i) {  // ends first: they are mostly the largest and spare the rest
     for (const int end : {0, 4}) {
@@ -213,7 +261,7 @@ BeamExtreme SupportedFrame::Data::longest(const Eigen::Vector4d& load) const {
 double SupportedFrame::Data::stress(const Piece& piece, const Vector12d& end_forces, const Vector3d& weight,
                                     double x) const {
   const BeamSection& section = frame.members[piece.member].section;
-  const Vector6d cut = piece.element.section_forces(end_forces, weight, x);
+  const Vector6d cut = detail::section_forces(end_forces, piece.R_object_member, weight, x);
   const double about_y = std::abs(cut(4)) * section.z_extent / section.iy;
   const double about_z = std::abs(cut(5)) * section.y_extent / section.iz;
   const double bending = section.round ? std::hypot(about_y, about_z) : about_y + about_z;
@@ -228,9 +276,9 @@ void SupportedFrame::Data::find_stress(const Eigen::Vector4d& load, const Vector
   };
   for (const Piece& piece : pieces) {
     if (!frame.members[piece.member].section.stresses_known()) continue;
-    const Vector3d weight = piece.element.line_density() * gravity;
-    const Vector12d at_ends = piece.element.end_forces(ends(piece, load), weight);
-    const double length = piece.element.length();
+    const Vector3d weight = piece.line_density * gravity;
+    const Vector12d at_ends = piece.end_forces * load;
+    const double length = piece.length();
     const auto value = [&](double x) { return stress(piece, at_ends, weight, x); };
     int top = 0;
     double largest = value(0);
@@ -277,7 +325,7 @@ BeamExtreme SupportedFrame::largest_displacement(const Vector3d& gravity) const 
 Vector3d SupportedFrame::displacement(const Vector3d& gravity, int member, double distance) const {
   const Eigen::Vector4d load = factors(gravity);
   const Piece& piece = data_->piece(member, distance);
-  const double t = std::clamp((distance - piece.from) / piece.element.length(), 0.0, 1.0), s = 1 - t;
+  const double t = std::clamp((distance - piece.from) / piece.length(), 0.0, 1.0), s = 1 - t;
   Eigen::Matrix<double, 5, 1> basis;
   basis << s * s * s * s, 4 * t * s * s * s, 6 * t * t * s * s, 4 * t * t * t * s, t * t * t * t;
   Vector3d out = Vector3d::Zero();
@@ -287,9 +335,9 @@ Vector3d SupportedFrame::displacement(const Vector3d& gravity, int member, doubl
 
 Vector6d SupportedFrame::section_forces(const Vector3d& gravity, int member, double distance) const {
   const Piece& piece = data_->piece(member, distance);
-  const Vector3d weight = piece.element.line_density() * gravity;
-  return piece.element.section_forces(piece.element.end_forces(data_->ends(piece, factors(gravity)), weight), weight,
-                                      distance - piece.from);
+  const Vector3d weight = piece.line_density * gravity;
+  return detail::section_forces(piece.end_forces * factors(gravity), piece.R_object_member, weight,
+                                distance - piece.from);
 }
 
 }  // namespace mmgrasp

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from mmgrasp.grasping import SupportedFrame, follow_object_path
 from mmgrasp.pipes import load_pipe_problem, plan_pipe
-from mmgrasp.pipes.planning import timed_motion
+from mmgrasp.pipes.timed_motion import timed_motion
 from mmgrasp.sim.flexible_pipe import FlexiblePipe
 
 PAGE = Path(__file__).parents[2] / "docs/methods/structure.md"

@@ -78,7 +78,7 @@ const std::vector<OptionField<GraspSearchOptions>>& grasp_search_fields() {
                 "further searches, each for another mix of the objectives: the Pareto front is searched"),
       option<O>("max_gap", &O::max_gap, "branch_and_bound: ends once no grasp can be cheaper by this share"),
       option<O>("max_boxes", &O::max_boxes, "branch_and_bound: budget in boxes of grasps"),
-      option<O>("time_limit", &O::time_limit, "branch_and_bound: wall-clock cap [s]"),
+      option<O>("time_limit", &O::time_limit, "Wall-clock cap of all searches together [s]"),
       option<O>("threads", &O::threads, "branch_and_bound: 0: all; the answer does not depend on it")};
   return fields;
 }
@@ -137,7 +137,7 @@ py::dict object_path_dict(const ObjectPathResult& r) {
                   "deflection"_a = r.deflection, "force_manipulability"_a = r.force_manipulability,
                   "path"_a = path_list(r.outcome == Outcome::solved ? std::optional(r.path) : std::nullopt),
                   "sag"_a = r.sag, "overloaded"_a = r.overloaded, "violation"_a = r.violation,
-                  "violations"_a = r.violations, "rejections"_a = to_dict(r.rejections),
+                  "violations"_a = r.violations, "rejections"_a = to_dict(r.rejections), "gaps"_a = r.gaps,
                   "refused_edges"_a = r.refused_edges, "configurations"_a = r.configurations);
 }
 
@@ -176,6 +176,10 @@ void bind_object_path_result(py::module_& m) {
       .def_readonly("overloaded", &R::overloaded, "Poses at which it bends or bears more than it may.")
       .def_readonly("violation", &R::violation, "P2's Cost(C); 0 if and only if solved.")
       .def_readonly("violations", &R::violations, "Of each pose: 2 out of reach, 1 in collision, 0 neither.")
+      .def_readonly(
+          "gaps", &R::gaps,
+          "When every pose is reached but there is no path: of each pose but the last how the next is missed.\n"
+          "0 it is not, 1 every motion jumps to another posture, 2 those that do not collide or leave the path.")
       .def_readonly("rejections", &R::rejections, "Configurations rejected, by cause.")
       .def_readonly("refused_edges", &R::refused_edges, "Motions between poses that collide or leave the path.")
       .def_readonly("configurations", &R::configurations, "Arm configurations found over all poses.")
@@ -215,6 +219,12 @@ void bind_optimum(py::module_& m) {
            "then takes the one that sags least among those whose motion is short enough.")
       .def_readonly("overloaded", &R::overloaded,
                     "Of each pose: with how many the pipe bends or bears more than it may.")
+      .def_readonly(
+          "jumping_after", &R::jumping_after,
+          "Of each pose but the last: with how many grasps that reach every pose all motions to the next one\n"
+          "jump to another posture of the arm.")
+      .def_readonly("colliding_after", &R::colliding_after,
+                    "The same where each motion that does not jump collides or leaves the path.")
       .def("__repr__", [](const R& r) {
         return std::string("GraspOptimum(") + to_string(r.outcome) + ", " + std::to_string(r.evaluations) +
                " grasps tried, " + std::to_string(r.feasible.size()) + " feasible" +

@@ -32,6 +32,25 @@ def rotation_about(vector: np.ndarray) -> np.ndarray:
     return out
 
 
+def rotation_vectors(R: np.ndarray) -> np.ndarray:
+    """The vectors (n, 3) of rotations (n, 3, 3) [rad]. Near half a turn their directions lose digits, their lengths do not."""
+    skew = np.stack([R[:, 2, 1] - R[:, 1, 2], R[:, 0, 2] - R[:, 2, 0], R[:, 1, 0] - R[:, 0, 1]], axis=1) / 2
+    sine = np.linalg.norm(skew, axis=1)
+    angle = np.arctan2(sine, (np.trace(R, axis1=1, axis2=2) - 1) / 2)
+    unit = np.where(sine[:, None] > 1e-12, skew / np.maximum(sine, 1e-12)[:, None], [1.0, 0.0, 0.0])
+    return angle[:, None] * unit
+
+
+def rotations_about(vectors: np.ndarray) -> np.ndarray:
+    """The rotations (n, 3, 3) of vectors (n, 3) [rad] (Rodrigues)."""
+    angle = np.linalg.norm(vectors, axis=1)
+    x, y, z = (vectors / np.maximum(angle, 1e-15)[:, None]).T
+    zero = np.zeros_like(x)
+    K = np.stack([zero, -z, y, z, zero, -x, -y, x, zero], axis=1).reshape(-1, 3, 3)
+    out: np.ndarray = np.eye(3) + np.sin(angle)[:, None, None] * K + (1 - np.cos(angle))[:, None, None] * (K @ K)
+    return out
+
+
 def between(a: np.ndarray, b: np.ndarray, share: float) -> np.ndarray:
     """The pose (4, 4) on the straight way from a to b that turns evenly about one axis; `share` in [0, 1]."""
     T = np.eye(4)

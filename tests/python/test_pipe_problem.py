@@ -25,7 +25,7 @@ from mmgrasp._turns import rotation_about, rotation_vector
 from mmgrasp.cli import main
 from mmgrasp.grasping import BeamSupport, SupportedFrame, optimize_grasp
 from mmgrasp.pipes import PipePlan, arc_poses, line_poses, load_pipe_problem, plan_pipe, planning
-from mmgrasp.pipes.planning import _dense
+from mmgrasp.pipes.timed_motion import _dense
 from mmgrasp.viz.pipe_report import pipe_report_html
 
 SHIPPED = ASSETS / "pipes" / "pipe1.yaml"

@@ -2,6 +2,8 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
+#include <iomanip>
+#include <sstream>
 #include <string>
 
 #include "mmgrasp/core/error.hpp"
@@ -19,8 +21,11 @@ PairwiseWeights pairwise_weights(const Eigen::MatrixXd& comparison, double max_c
     for (Eigen::Index j = 0; j < m; ++j) {
       const std::string entry = "comparison[" + std::to_string(i) + ", " + std::to_string(j) + "]";
       require(std::isfinite(comparison(i, j)) && comparison(i, j) > 0, entry, comparison(i, j), "must be positive");
-      require(std::abs(comparison(i, j) * comparison(j, i) - 1) <= 1e-6, entry, comparison(i, j),
-              "must be one over its opposite: the matrix is not reciprocal");
+      if (std::abs(comparison(i, j) * comparison(j, i) - 1) <= 1e-6) continue;
+      std::ostringstream opposite;
+      opposite << std::setprecision(9) << 1 / comparison(j, i);
+      require(false, entry, comparison(i, j),
+              "must be one over its opposite, " + opposite.str() + ": the matrix is not reciprocal");
     }
   }
   PairwiseWeights out;

@@ -26,7 +26,7 @@ void Pipe::check() const {
     const std::string value = "(" + std::to_string(a) + ", " + std::to_string(b) + ")";
     require(a >= 0 && b >= 0 && a < count && b < count, entry("sections", i), value,
             "must be indices of the " + std::to_string(count) + " nodes, from 0");
-    require(length(static_cast<int>(i)) >= kShortest, entry("sections", i), value,
+    require(length(static_cast<int>(i)) >= kShortest * (1 - 1e-9), entry("sections", i), value,
             "its nodes must be at least 0.001 m apart");
     for (std::size_t j = 0; j < i; ++j) {
       const auto [c, d] = sections[j];

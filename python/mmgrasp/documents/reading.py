@@ -22,6 +22,7 @@ from .yaml_text import parse_yaml
 LARGEST = 1e6  # no length, angle or time in a file is larger [SI]
 SMALLEST = 1e-6  # nor, where it must be positive, smaller
 LARGEST_INTEGER = 2**31 - 1
+LARGEST_RPY = 4 * math.pi  # [rad]
 LONGEST_NAME = 200  # names become file names, and lines on a terminal
 DEEPEST = 50  # levels of a file
 LARGEST_SCENARIO = 4_000_000  # [bytes]
@@ -99,9 +100,9 @@ class Node:
         return f"{self.document.source}:{line}" if line else self.document.source
 
     def fail(self, rule: str) -> NoReturn:
-        """Raises InvalidInput: place, name, value and the rule that it breaks."""
-        shown = _SHORT.repr(self.raw)
-        raise InvalidInput(printable(f"{self.place}: {self.name} = {shown}: {rule}"))
+        """Raises InvalidInput: place, name, value (of a mapping the reader has its place) and the rule that it breaks."""
+        shown = "" if isinstance(self.raw, Mapping) else f" = {_SHORT.repr(self.raw)}"
+        raise InvalidInput(printable(f"{self.place}: {self.name}{shown}: {rule}"))
 
     # --- mappings -------------------------------------------------------------------------------------------------
     def mapping(self, required: str = "", optional: str = "") -> Node:
@@ -254,7 +255,10 @@ class Node:
             if abs(math.sqrt(sum(x * x for x in quat)) - 1) > 1e-3:
                 self["quat_xyzw"].fail("must have norm 1")
             return pose(xyz, quat_xyzw=quat)
-        return pose(xyz, rpy=self["rpy"].numbers(3) if "rpy" in self else [0, 0, 0])
+        rpy = self["rpy"].numbers(3) if "rpy" in self else [0.0, 0.0, 0.0]
+        if max(map(abs, rpy)) > LARGEST_RPY:
+            self["rpy"].fail("must be angles of at most two turns: they are in radians, not in degrees")
+        return pose(xyz, rpy=rpy)
 
 
 def _all_numbers(raw: Any) -> bool:

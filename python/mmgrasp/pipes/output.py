@@ -65,6 +65,8 @@ def result_to_dict(plan: PipePlan) -> dict[str, Any]:
         "unreachable": list(optimum.unreachable),
         "colliding": list(optimum.colliding),
         "overloaded": list(optimum.overloaded),
+        "jumping_after": list(optimum.jumping_after),
+        "colliding_after": list(optimum.colliding_after),
         "compared": [
             grasp_to_dict(grasp) | _costs(found) for grasp, found in zip(problem.compare, plan.compared, strict=True)
         ],
@@ -87,6 +89,7 @@ def _costs(found: ObjectPathResult) -> dict[str, Any]:
             "outcome": found.outcome.name,
             "violations": list(found.violations),
             "overloaded": list(found.overloaded),
+            "gaps": list(found.gaps),
         }
     return {
         "outcome": found.outcome.name,

@@ -86,8 +86,13 @@ def _segment(node: Node, last: np.ndarray) -> list[np.ndarray]:
     angle = arc["angle"].number()
     if abs(angle) < 1e-6:
         arc["angle"].fail("must not be zero")
+    count = _count(arc["poses"])
+    if abs(angle) / count > np.pi - 1e-3:
+        arc["angle"].fail(
+            f"{count} poses turn by half a turn or more from one to the next: it is in radians, or give more"
+        )
     turns = arc["turns"].boolean() if "turns" in arc else True
-    return arc_poses(last, np.array(arc["centre"].numbers(3)), axis, angle, _count(arc["poses"]), turns)
+    return arc_poses(last, np.array(arc["centre"].numbers(3)), axis, angle, count, turns)
 
 
 def _count(node: Node) -> int:

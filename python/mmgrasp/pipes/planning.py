@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from .._core import (
-    CollisionChecker,
     Error,
     Grasp,
     GraspOptimum,
@@ -18,21 +17,12 @@ from .._core import (
     default_grasp_search,
     follow_object_path,
     optimize_grasp,
-    time_parameterize,
 )
 from .._progress import Progress
-from .._turns import between, rotation_vector
 from .problem import PipeProblem
+from .timed_motion import UntimedError, passing_times, timed_motion
 
-POSITION_STEP, ROTATION_STEP = 0.01, 0.05  # of the pipe between two poses that the arm is computed for [m], [rad]
-CORNER = 0.002  # the timed motion passes this near to each of them, in every joint [rad or m]
-STOP = 1e-4  # or, where that leaves the path, this near [rad or m]
 TIMED_GRASPS = 20  # the cheapest grasps, of which one must have a timed motion
-CHECK_STEP = 0.005  # no joint moves more between two checks of the timed motion [rad or m]
-
-
-class UntimedError(Error):
-    """A grasp's motion through its poses cannot be timed."""
 
 
 @dataclass(frozen=True)
@@ -107,9 +97,14 @@ class PipePlan:
         causes = [
             (found.unreachable, "no arm configuration reaches pose {} with {} of the {} grasps tried"),
             (found.colliding, "at pose {} every arm configuration collides with {} of the {} grasps tried"),
+            (found.overloaded, f"at pose {{}} the pipe {self.problem.overload} with {{}} of the {{}} grasps tried"),
             (
-                found.overloaded,
-                "at pose {} the pipe bends or bears more than its limits with {} of the {} grasps tried",
+                found.jumping_after,
+                "from pose {} to the next every motion jumps to another arm posture with {} of the {} grasps tried: give poses between, or raise max_joint_step",
+            ),
+            (
+                found.colliding_after,
+                "from pose {} to the next every motion without a jump collides or leaves the path with {} of the {} grasps tried: give poses between, or raise position_tolerance or rotation_tolerance",
             ),
         ]
         lines = []
@@ -118,8 +113,6 @@ class PipePlan:
             if counts[worst] > 0:
                 lines.append((counts[worst], text.format(worst, counts[worst], tried)))
         lines.sort(key=lambda line: -line[0])
-        if not lines:
-            return "every pose is reached, but no allowed motion joins the poses: give poses between, or raise max_joint_step"
         return "; ".join(text for _, text in lines)
 
 
@@ -152,7 +145,7 @@ def plan_pipe(problem: PipeProblem, progress: Progress = None) -> PipePlan:
         break
     if plan.grasp is None or plan.trajectory is None or plan.path is None:
         raise UntimedError(f"{reason} ({plan.untimed} grasps tried)")
-    plan.waypoint_times = _passing_times(plan.trajectory, plan.path.path)
+    plan.waypoint_times = passing_times(plan.trajectory, plan.path.path)
     held = SupportedFrame(problem.frame, [plan.grasp])
     for T, time in zip(problem.T_world_pipe, plan.waypoint_times, strict=True):
         state = held.state(problem.gravity_in_pipe(T))
@@ -167,113 +160,3 @@ def plan_pipe(problem: PipeProblem, progress: Progress = None) -> PipePlan:
             )
         )
     return plan
-
-
-def timed_motion(
-    problem: PipeProblem, grasp: Grasp, waypoints: np.ndarray, progress: Progress = None
-) -> tuple[JointTrajectory, tuple[float, float]]:
-    """The motion through the waypoints, along the pipe's path between them where the arm can, else straight in joint space.
-
-    Checked for collisions and against the path's tolerances; raises UntimedError when neither passes.
-    """
-    arm, world = problem.holding(grasp)
-    checker = CollisionChecker(problem.robot, world, group=arm)
-    allowed = (
-        float(problem.path_options.get("position_tolerance", 0.01)),
-        float(problem.path_options.get("rotation_tolerance", 0.05)),
-    )
-    dense = _dense(problem, grasp, waypoints)
-    tries = [(dense, CORNER)] if dense is not None else []
-    for path, corner in (*tries, (waypoints, CORNER), (waypoints, STOP)):
-        trajectory = time_parameterize(
-            path,
-            problem.speed * np.asarray(arm.velocity_limits),
-            problem.acceleration * np.asarray(arm.acceleration_limits),
-            names=arm.names,
-            max_deviation=corner,
-            progress=progress,
-        )
-        error = _path_error(problem, grasp, trajectory, waypoints)
-        if error[0] <= allowed[0] and error[1] <= allowed[1] and _is_free(checker, trajectory):
-            return trajectory, error
-    raise UntimedError(
-        "the timed motion leaves the pipe's path or collides, which the motion through its poses does not: give more poses"
-    )
-
-
-def _dense(problem: PipeProblem, grasp: Grasp, waypoints: np.ndarray) -> np.ndarray | None:
-    """Configurations at poses between the waypoints; None when the arm's posture cannot be kept there."""
-    out = [waypoints[0]]
-    for i in range(len(waypoints) - 1):
-        a, b = problem.T_world_pipe[i], problem.T_world_pipe[i + 1]
-        length = np.linalg.norm(b[:3, 3] - a[:3, 3])
-        angle = np.linalg.norm(rotation_vector(a[:3, :3].T @ b[:3, :3]))
-        pieces = max(1, int(np.ceil(max(length / POSITION_STEP, angle / ROTATION_STEP))))
-        for k in range(1, pieces):
-            near = waypoints[i] + (waypoints[i + 1] - waypoints[i]) * (k / pieces)
-            found = problem.arm.ik(between(a, b, k / pieces) @ grasp.T_object_hand, seed=near, restarts=0)
-            if found.q is None or np.abs(found.q - near).max() > 0.1:
-                return None
-            out.append(found.q)
-        out.append(waypoints[i + 1])
-    return np.array(out)
-
-
-def _samples(trajectory: JointTrajectory) -> np.ndarray:
-    """Configurations so close that no joint moves more than CHECK_STEP between two of them."""
-    rows = [trajectory.positions[:1]]
-    for a, b in zip(trajectory.positions[:-1], trajectory.positions[1:], strict=True):
-        pieces = max(1, int(np.ceil(np.abs(b - a).max() / CHECK_STEP)))
-        rows.append(a + (b - a) * (np.arange(1, pieces + 1) / pieces)[:, None])
-    return np.concatenate(rows)
-
-
-def _is_free(checker: CollisionChecker, trajectory: JointTrajectory) -> bool:
-    return bool(np.all(checker.are_free(_samples(trajectory))))
-
-
-def _path_error(
-    problem: PipeProblem, grasp: Grasp, trajectory: JointTrajectory, waypoints: np.ndarray
-) -> tuple[float, float]:
-    """The largest distance and angle of the pipe, at any sample of the motion, from the nearest place of its path's straight pieces."""
-    T_hand_pipe = np.linalg.inv(grasp.T_object_hand)
-    times = _passing_times(trajectory, waypoints)
-    hands = problem.arm.fk_batch(trajectory.positions)
-    worst = np.zeros(2)
-    for time, T_world_hand in zip(trajectory.times, hands, strict=True):
-        T = T_world_hand @ T_hand_pipe
-        i = int(np.clip(np.searchsorted(times, time, side="right") - 1, 0, len(times) - 2))
-        near = [_distance(problem.T_world_pipe, j, T) for j in (i - 1, i, i + 1) if 0 <= j < len(times) - 1]
-        worst = np.maximum(worst, min(near, key=lambda e: e[0] + 0.1 * e[1]))
-    return float(worst[0]), float(worst[1])
-
-
-def _distance(poses: np.ndarray, i: int, T: np.ndarray) -> tuple[float, float]:
-    """From the piece between poses i and i + 1."""
-    a, b = poses[i], poses[i + 1]
-    way = b[:3, 3] - a[:3, 3]
-    turn = rotation_vector(a[:3, :3].T @ b[:3, :3])
-    weight = 0.01  # [m2/rad2] turns count where the pipe hardly moves
-    along = way @ (T[:3, 3] - a[:3, 3]) + weight * (turn @ rotation_vector(a[:3, :3].T @ T[:3, :3]))
-    share = float(np.clip(along / max(way @ way + weight * (turn @ turn), 1e-15), 0, 1))
-    at = between(a, b, share)
-    return (
-        float(np.linalg.norm(T[:3, 3] - at[:3, 3])),
-        float(np.linalg.norm(rotation_vector(at[:3, :3].T @ T[:3, :3]))),
-    )
-
-
-def _passing_times(trajectory: JointTrajectory, waypoints: np.ndarray) -> np.ndarray:
-    """When the motion is nearest to each waypoint, in their order: the first at its begin, the last at its end."""
-    lengths = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(waypoints, axis=0), axis=1))])
-    done = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(trajectory.positions, axis=0), axis=1))])
-    shares = lengths / lengths[-1] * done[-1] if lengths[-1] > 0 else lengths
-    times = [trajectory.times[0]]
-    window = 0.1 * done[-1] + 1e-9
-    for waypoint, share in zip(waypoints[1:-1], shares[1:-1], strict=True):
-        near = np.flatnonzero((np.abs(done - share) <= window) & (trajectory.times >= times[-1]))
-        if len(near) == 0:
-            near = np.flatnonzero(trajectory.times >= times[-1])
-        best = near[np.argmin(np.linalg.norm(trajectory.positions[near] - waypoint, axis=1))]
-        times.append(trajectory.times[best])
-    return np.array([*times, trajectory.times[-1]])

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from .._core import InvalidInput, pairwise_weights
 from ..documents.reading import Node
-from .structure_section import STIFFEST
+from .structure_section import pressure
 
 OBJECTIVES = ("motion", "deflection", "manipulability")
 """Joint motion (O1), sag (O2), force manipulability (O3) of P2 3.2.3.3, in this order in comparison matrices, too."""
@@ -85,5 +85,5 @@ def read_limits(root: Node) -> Limits:
     node = root["limits"].mapping("", "sag stress")
     return Limits(
         node["sag"].number(above=0) if "sag" in node else 0.0,
-        node["stress"].number(above=0, most=STIFFEST) if "stress" in node else 0.0,
+        pressure(node["stress"]) if "stress" in node else 0.0,
     )

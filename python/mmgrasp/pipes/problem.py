@@ -25,6 +25,7 @@ TOP_KEYS = "format version name structure start path robot"
 TOP_OPTIONAL = "gripper obstacles allowed_collisions padding preferences limits timing compare options"
 SHAPE_KEYS = "box cylinder sphere mesh shapes scale"
 PIPE = "pipe"
+SLOWEST = 1e-3  # share of the joints' limits: slower motions take hours
 SEARCH_OPTIONS = (
     "algorithm",
     "max_evaluations",
@@ -71,6 +72,16 @@ class PipeProblem:
     def all_path_options(self) -> dict[str, Any]:
         """Keywords of follow_object_path."""
         return {**self.path_options, **self.preferences.options, "max_sag": self.limits.sag}
+
+    @property
+    def overload(self) -> str:
+        """What the pipe must not do, in words."""
+        limits = []
+        if self.limits.sag:
+            limits.append(f"sags more than {self.limits.sag:g} m")
+        if any(member.material.stress_limit > 0 for member in self.frame.members):
+            limits.append("bears more stress than its material's limit")
+        return " or ".join(limits)
 
     def gravity_in_pipe(self, T_world_pipe: np.ndarray) -> np.ndarray:
         """Gravity in the pipe's frame (3,) [m/s2]."""
@@ -182,7 +193,9 @@ def _check_holdable(node: Node, pipe: Pipe, gripper: Hand) -> None:
             f"no section fits the hand, which opens {gripper.max_opening:g} m: the thinnest is {min(pipe.diameters):g} m thick"
         )
     if max(thin) <= gripper.finger_width:
-        node.fail(f"no section that fits the hand is longer than its fingers are wide, {gripper.finger_width:g} m")
+        node.fail(
+            f"no section that fits the hand is longer than its fingers are wide, {gripper.finger_width:g} m: the longest is {max(thin):g} m"
+        )
 
 
 def _read_timing(root: Node) -> tuple[float, float]:
@@ -191,9 +204,9 @@ def _read_timing(root: Node) -> tuple[float, float]:
         node = root["timing"].mapping("", "speed acceleration")
         for i, key in enumerate(("speed", "acceleration")):
             if key in node:
-                shares[i] = node[key].number(above=0)
-                if shares[i] > 1:
-                    node[key].fail("must be at most 1, the joints' own limits")
+                shares[i] = node[key].number()
+                if not SLOWEST <= shares[i] <= 1:
+                    node[key].fail(f"must be a share of the joints' own limits, from {SLOWEST:g} to 1")
     return shares[0], shares[1]
 
 

@@ -10,6 +10,7 @@ from .._core import BeamFrame, BeamMaterial, BeamMember, InvalidInput, NodeLoad,
 from ..documents.reading import Node, near_miss
 
 STIFFEST = 1e13  # no modulus and no stress in a file is larger [Pa]
+SOFTEST = 1e3  # nor smaller: what is less was not given in Pa
 LONGEST = 100.0  # no arm carries a pipe that spans more [m]
 SHARED = "outer_diameter inner_diameter material"
 _Made = TypeVar("_Made")
@@ -20,6 +21,8 @@ def read_structure(node: Node, stress_limit: float = 0.0) -> tuple[Pipe, BeamFra
     node.mapping("nodes sections", SHARED + " materials loads")
     materials = _read_materials(node, stress_limit)
     nodes = [element.numbers(3) for element in node["nodes"].elements()]
+    if not nodes:
+        node["nodes"].fail("must not be empty")
     span = max((max(values) - min(values) for values in zip(*nodes, strict=True)), default=0.0)
     if span > LONGEST:
         node["nodes"].fail(f"span {span:g} m, must be at most {LONGEST:g} m: coordinates are in metres")
@@ -81,20 +84,32 @@ def _read_materials(node: Node, stress_limit: float) -> dict[str, BeamMaterial]:
     }
     for name, given in node["materials"].items() if "materials" in node else []:
         given.mapping("density youngs_modulus shear_modulus", "stress_limit")
-        own = given["stress_limit"].number(above=0, most=STIFFEST) if "stress_limit" in given else 0.0
+        if name in materials:
+            given.fail("is the copper of P2 table 3.4, which needs no entry; call another one otherwise")
+        own = pressure(given["stress_limit"]) if "stress_limit" in given else 0.0
         materials[name] = BeamMaterial(
             given["density"].number(least=0),
-            given["youngs_modulus"].number(above=0, most=STIFFEST),
-            given["shear_modulus"].number(above=0, most=STIFFEST),
+            pressure(given["youngs_modulus"]),
+            pressure(given["shear_modulus"]),
             limited(own),
         )
     return materials
+
+
+def pressure(node: Node) -> float:
+    """A modulus or a stress [Pa]."""
+    value = node.number(above=0, most=STIFFEST)
+    if value < SOFTEST:
+        node.fail(f"must be at least {SOFTEST:g}: it is in Pa (1 MPa is 1.0e6, 1 GPa is 1.0e9)")
+    return value
 
 
 def _read_load(node: Node, nodes: int) -> NodeLoad:
     node.mapping("node", "mass force moment")
     if node["node"].integer(least=0) >= nodes:
         node["node"].fail(f"there is no such node, only 0 to {nodes - 1}")
+    if not {"mass", "force", "moment"} & node.raw.keys():
+        node.fail("must have a mass, a force or a moment")
     mass = node["mass"].number(least=0) if "mass" in node else 0.0
     force, moment = (node[key].numbers(3) if key in node else [0.0, 0.0, 0.0] for key in ("force", "moment"))
     return NodeLoad(node["node"].integer(), mass, force, moment)

@@ -22,7 +22,9 @@ SHARE = 0.12  # of the pipe's size that the largest drawn displacement has
 
 def write_pipe_pictures(plan: PipePlan, out: Path, report: Callable[[str, float], None]) -> list[Path]:
     """Writes every picture and returns their paths."""
-    steps = [write_trade_off] if plan.trajectory is None else [write_deformed, write_sag, write_trade_off, write_motion]
+    steps = [write_trade_off] if plan.optimum.feasible else []
+    if plan.trajectory is not None:
+        steps = [write_deformed, write_sag, write_trade_off, write_motion]
     paths = []
     for i, step in enumerate(steps):
         report("pictures", i / len(steps))
@@ -68,6 +70,8 @@ def write_deformed(plan: PipePlan, out: Path) -> Path:
     largest = sections[row.section]
     share = row.distance / plan.problem.pipe.lengths[row.section]
     at = largest[1][round(share * (POINTS - 1))]
+    from matplotlib.ticker import MaxNLocator
+
     drawn = _pyplot()(11, 5.4)
     for number, (elevation, azimuth) in enumerate(((20, -60), (4, 30)), start=1):
         axes: Any = drawn.add_subplot(1, 2, number, projection="3d")
@@ -79,6 +83,8 @@ def write_deformed(plan: PipePlan, out: Path) -> Path:
         axes.set_aspect("equal")
         axes.view_init(elevation, azimuth)
         axes.tick_params(labelsize=7)
+        for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
+            axis.set_major_locator(MaxNLocator(4))
         axes.set_xlabel("x [m]", fontsize=8)
         axes.set_ylabel("y [m]", fontsize=8)
         if number == 2:
@@ -94,19 +100,20 @@ def write_deformed(plan: PipePlan, out: Path) -> Path:
 def write_sag(plan: PipePlan, out: Path) -> Path:
     """Sag and stress on the motion's clock."""
     limits = plan.problem.limits
-    curves = [("largest displacement [mm]", [1e3 * row.sag for row in plan.sags], 1e3 * limits.sag, TRAY_COLOURS[0])]
+    sags = [1e3 * row.sag for row in plan.sags]
+    curves = [("largest displacement", "mm", sags, 1e3 * limits.sag, TRAY_COLOURS[0])]
     if all(row.stress is not None for row in plan.sags):
         stresses = [1e-6 * (row.stress or 0.0) for row in plan.sags]
-        curves.append(("largest stress [MPa]", stresses, 1e-6 * limits.stress, TRAY_COLOURS[5]))
+        curves.append(("largest stress", "MPa", stresses, 1e-6 * limits.stress, TRAY_COLOURS[5]))
     drawn = _pyplot()(9, 2.6 * len(curves))
-    for number, (name, values, limit, colour) in enumerate(curves, start=1):
+    for number, (name, unit, values, limit, colour) in enumerate(curves, start=1):
         axes = drawn.add_subplot(len(curves), 1, number)
         axes.plot([row.time for row in plan.sags], values, "o-", color=colour, markersize=4)
         axes.set_ylim(0, 1.2 * max(values) if max(values) > 0 else 1.0)
-        axes.set_ylabel(name)
+        axes.set_ylabel(f"{name} [{unit}]")
         if limit:
             axes.axhline(limit, color=colour, linestyle=":", linewidth=1.5)
-            axes.set_title(f"at rest at each pose of the path; the limit is {limit:g}", loc="left", fontsize=10)
+            axes.set_title(f"at rest at each pose of the path; the limit is {limit:g} {unit}", loc="left", fontsize=10)
         else:
             axes.set_title("at rest at each pose of the path", loc="left", fontsize=10)
     drawn.axes[-1].set_xlabel("time [s]")

@@ -206,13 +206,14 @@ TEST(ConfigurationGraph, EqualsAllPaths) {
     EXPECT_EQ(path.vertices.empty(), std::isinf(least));
     if (std::isinf(least)) {
       ++none;
-      EXPECT_GT(graph.gaps(), 0);
+      const std::vector<int> gaps = graph.gaps();
+      EXPECT_LT(std::count(gaps.begin(), gaps.end(), 0), static_cast<long>(gaps.size()));
       continue;
     }
     ++found;
     EXPECT_NEAR(checked.cost, least, 1e-12);
     EXPECT_NEAR(path.cost, least, 1e-12);
-    EXPECT_EQ(lazy.gaps(), 0);
+    for (const int gap : lazy.gaps()) EXPECT_EQ(gap, 0);
   }
   EXPECT_GT(found, 50);
   EXPECT_GT(none, 50);

@@ -33,7 +33,7 @@ struct MMGRASP_EXPORT GraspSearchOptions {
   int front_searches = 0;
   double max_gap = 1e-3;    ///< branch_and_bound: as a share of the cost; in (0, 1).
   int max_boxes = 1000000;  ///< branch_and_bound: budget in boxes bounded; > 0.
-  double time_limit = 600;  ///< branch_and_bound: wall-clock cap [s]; > 0.
+  double time_limit = 600;  ///< Wall-clock cap of all searches together [s]; then the best so far, as proven. > 0.
   int threads = 0;          ///< branch_and_bound; 0: all. The answer does not depend on it.
   PipeGraspOptions grasp;   ///< Axes of the hand, widest opening, margin kept from nodes; its sampling is not used.
   void check() const;
@@ -72,8 +72,11 @@ struct MMGRASP_EXPORT GraspOptimum {
   /// Poses in order, each with how many of the grasps tried could not reach it and at how many all arm configurations
   /// collided.
   std::vector<int> unreachable, colliding;
-  std::vector<int>
-      overloaded;  ///< For each pose: with how many of them the pipe bends or bears more than it may there.
+  /// Poses in order, each with how many of the grasps tried bend the pipe further or load it more than it may be there.
+  std::vector<int> overloaded;
+  /// For each pose but the last: with how many grasps that reach every pose each motion from there to the next one
+  /// jumps to another posture of the arm, and with how many each that does not collides or leaves the path.
+  std::vector<int> jumping_after, colliding_after;
 };
 
 /// The feasible grasps, each with its mean sag after the first pose [m] as its cost: for plan_manipulation with

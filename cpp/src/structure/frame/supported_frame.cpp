@@ -39,10 +39,6 @@ struct Piece {
   double length() const { return to - from; }
 };
 
-/// What is known of an answer: that the supports leave the frame movable, that its reactions do not carry its loads, or
-/// that they do.
-enum class Verdict { movable, inexact, exact };
-
 }  // namespace
 
 struct SupportedFrame::Data {
@@ -53,8 +49,9 @@ struct SupportedFrame::Data {
   MatrixXd reactions;      ///< 6 x supports rows.
 
   void divide(const std::vector<BeamSupport>& supports);
+  /// False when the frame can move, or its answer is lost, as far as `Scalar` can tell.
   template <class Scalar>
-  Verdict solve(const std::vector<BeamSupport>& supports);
+  bool solve(const std::vector<BeamSupport>& supports);
   const Piece& piece(int member, double distance) const;
   BeamExtreme longest(const Eigen::Vector4d& load) const;
   double stress(const Piece& piece, const Vector12d& end_forces, const Vector3d& weight, double x) const;
@@ -86,12 +83,9 @@ SupportedFrame::SupportedFrame(const BeamFrame& frame, const std::vector<BeamSup
   auto data = std::make_shared<Data>();
   data->frame = frame;
   data->divide(supports);
-  Verdict verdict = data->solve<double>(supports);
-  if (verdict != Verdict::exact) verdict = data->solve<detail::Wide>(supports);
-  require(verdict != Verdict::movable, "supports", "unstable",
-          "they leave the frame movable; clamp it, or hinder all six movements together");
-  require(verdict != Verdict::inexact, "members", "too unlike each other",
-          "34 decimals do not tell how a frame of so short or so soft members beside others bends; join short ones");
+  require(data->solve<double>(supports) || data->solve<detail::Wide>(supports), "supports", "unstable",
+          "they leave the frame movable, or hold it by members 1e20 times softer than others; clamp it, or hinder all "
+          "six movements together");
   data_ = data;
 }
 
@@ -143,7 +137,7 @@ void SupportedFrame::Data::divide(const std::vector<BeamSupport>& supports) {
 }
 
 template <class Scalar>
-Verdict SupportedFrame::Data::solve(const std::vector<BeamSupport>& supports) {
+bool SupportedFrame::Data::solve(const std::vector<BeamSupport>& supports) {
   using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
   const auto weight = [](const Piece& piece, int load) -> Vector3 {
     return load < 3 ? Vector3(Scalar(piece.line_density) * Vector3::Unit(load)) : Vector3(Vector3::Zero());
@@ -180,7 +174,7 @@ Verdict SupportedFrame::Data::solve(const std::vector<BeamSupport>& supports) {
       fixed[6 * support_nodes[i] + k] = fixed[6 * support_nodes[i] + k] || supports[i].fixed[k];
   }
   const auto moved = equations.solve(fixed);
-  if (!moved) return Verdict::movable;
+  if (!moved) return false;
   displacements = moved->template cast<double>();
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     Piece& piece = pieces[i];
@@ -202,7 +196,8 @@ Verdict SupportedFrame::Data::solve(const std::vector<BeamSupport>& supports) {
   for (int load = 0; load < kLoads; ++load) {
     detail::LoadBalance<Scalar> balance;
     for (std::size_t i = 0; i < nodes; ++i)
-      balance.add(places[i] - places[support_nodes[0]], equations.loads.template block<6, 1>(6 * static_cast<long>(i), load));
+      balance.add(places[i] - places[support_nodes[0]],
+                  equations.loads.template block<6, 1>(6 * static_cast<long>(i), load));
     for (std::size_t i = 0; i < supports.size(); ++i) {
       Eigen::Matrix<Scalar, 6, 1> held = forces.template block<6, 1>(6 * support_nodes[i], load);
       for (int k = 0; k < 6; ++k) {
@@ -213,7 +208,7 @@ Verdict SupportedFrame::Data::solve(const std::vector<BeamSupport>& supports) {
     }
     balanced = balanced && balance.holds();
   }
-  return balanced ? Verdict::exact : Verdict::inexact;
+  return balanced;
 }
 
 const Piece& SupportedFrame::Data::piece(int member, double distance) const {

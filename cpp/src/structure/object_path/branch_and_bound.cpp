@@ -5,7 +5,6 @@
 #include <queue>
 
 #include "mmgrasp/core/detail/numbers.hpp"
-#include "mmgrasp/core/detail/stopwatch.hpp"
 #include "mmgrasp/core/parallel.hpp"
 #include "structure/object_path/collision_proof.hpp"
 #include "structure/object_path/grasp_variables.hpp"
@@ -52,8 +51,7 @@ void halve(const GraspBox& box, std::vector<Node>& out) {
 
 BoxSearch divide_boxes(const ObjectPathProblem& problem, const Pipe& pipe, const ObjectPathOptions& path_options,
                        const GraspSearchOptions& options, double cost, const GraspCounter& count,
-                       const Monitor& monitor) {
-  const TimeLimit time_limit(options.time_limit);
+                       const TimeLimit& time_limit, const Monitor& monitor) {
   const PathBound bounds(problem, pipe, path_options, options.grasp);
   const int threads = resolve_threads(options.threads);
   std::vector<ObjectPathEvaluator> evaluators;
@@ -74,7 +72,7 @@ BoxSearch divide_boxes(const ObjectPathProblem& problem, const Pipe& pipe, const
   }
   double settled = kInfinity;  // least bound of boxes that are not divided any more
   const auto wanted = [&] { return cost * (1 - options.max_gap); };
-  while (!open.empty() && open.top().bound < wanted() && out.boxes < options.max_boxes && !out.stopped) {
+  while (!open.empty() && open.top().bound < wanted() && out.boxes < options.max_boxes && !monitor.stopped()) {
     if (time_limit.expired()) break;
     next.clear();
     for (int i = 0; i < kRound && !open.empty() && open.top().bound < wanted(); ++i) {
@@ -118,7 +116,6 @@ BoxSearch divide_boxes(const ObjectPathProblem& problem, const Pipe& pipe, const
     }
     const double bound = open.empty() ? cost : open.top().bound;
     monitor.report("branch and bound", cost < kInfinity ? std::clamp(bound / wanted(), 0.0, 1.0) : 0.0);
-    out.stopped = monitor.stopped();
   }
   out.lower_bound = std::min({cost, settled, open.empty() ? kInfinity : open.top().bound});
   return out;

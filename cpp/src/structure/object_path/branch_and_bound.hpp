@@ -2,6 +2,7 @@
 
 #include <functional>
 
+#include "mmgrasp/core/detail/stopwatch.hpp"
 #include "mmgrasp/structure/optimize_grasp.hpp"
 
 namespace mmgrasp::detail {
@@ -13,13 +14,13 @@ using GraspCounter = std::function<void(const Grasp& grasp, const ObjectPathResu
 struct BoxSearch {
   double lower_bound = 0;
   int boxes = 0;
-  bool stopped = false;
 };
 
 /// Divides boxes, the one with the lowest bound first, until none can hold a grasp cheaper than (1 - max_gap) times the
-/// best cost, which is `cost` at first (infinite: none is known). Middles of boxes that could be cheaper are evaluated.
+/// best cost, which is `cost` at first (infinite: none is known), or time is up. Middles of boxes that could be cheaper
+/// are evaluated.
 BoxSearch divide_boxes(const ObjectPathProblem& problem, const Pipe& pipe, const ObjectPathOptions& path_options,
                        const GraspSearchOptions& options, double cost, const GraspCounter& count,
-                       const Monitor& monitor);
+                       const TimeLimit& time_limit, const Monitor& monitor);
 
 }  // namespace mmgrasp::detail

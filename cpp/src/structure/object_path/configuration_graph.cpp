@@ -90,27 +90,27 @@ ConfigurationGraph::Path ConfigurationGraph::cheapest(const Check* check) {
   return path;
 }
 
-int ConfigurationGraph::gaps() const {
-  int count = 0;
+std::vector<int> ConfigurationGraph::gaps() const {
+  std::vector<int> out;
   std::vector<char> reached = alive_[0];
   for (std::size_t layer = 0; layer < joins_.size(); ++layer) {
     std::vector<char> next(alive_[layer + 1].size(), 0);
-    bool any = false;
+    bool any = false, was_joined = false;
     for (std::size_t to = 0; to < next.size(); ++to) {
       if (!alive_[layer + 1][to]) continue;
       const auto [first, last] = range(joins_[layer], to);
       for (std::size_t k = first; k < last && !next[to]; ++k) {
-        next[to] = reached[joins_[layer].edges[k].from] && joins_[layer].edges[k].cost < kNone;
+        const Edge& edge = joins_[layer].edges[k];
+        was_joined = was_joined || reached[edge.from];
+        next[to] = reached[edge.from] && edge.cost < kNone;
       }
       any = any || next[to];
     }
-    if (!any) {
-      next = alive_[layer + 1];
-      ++count;
-    }
+    out.push_back(any ? 0 : was_joined ? 2 : 1);
+    if (!any) next = alive_[layer + 1];
     reached.swap(next);
   }
-  return count;
+  return out;
 }
 
 }  // namespace mmgrasp::detail

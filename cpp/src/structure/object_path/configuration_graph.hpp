@@ -35,8 +35,10 @@ class MMGRASP_EXPORT ConfigurationGraph {
     std::function<bool(std::size_t layer, int from, int to)> edge;
   };
   Path cheapest(const Check* check = nullptr);
-  /// Layers that no vertex reached so far is joined to; from each such layer on, all of its vertices count as reached.
-  int gaps() const;
+  /// For each layer but the last whether some vertex reached so far is joined to the next layer (0), whether none ever
+  /// was (1), or whether all such edges were taken out (2). After a gap all vertices of the next layer count as
+  /// reached.
+  std::vector<int> gaps() const;
 
  private:
   struct Edge {

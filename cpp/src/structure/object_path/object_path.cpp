@@ -359,7 +359,11 @@ ObjectPathResult ObjectPathEvaluator::evaluate(const Grasp& grasp) {
       if (found.known[i][k] == 2) graph.remove_vertex(i, k);
     }
   }
-  if (!violated()) result.violation = std::max(1, graph.gaps());
+  if (!violated()) {
+    result.gaps = graph.gaps();
+    const auto gaps = result.gaps.size() - std::count(result.gaps.begin(), result.gaps.end(), 0);
+    result.violation = std::max(1, static_cast<int>(gaps));
+  }
   return result;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "mmgrasp/core/detail/numbers.hpp"
+#include "mmgrasp/core/detail/stopwatch.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "structure/bound/ik_enclosure.hpp"
 #include "structure/object_path/branch_and_bound.hpp"
@@ -68,9 +69,13 @@ GraspOptimum optimize_grasp(const ObjectPathProblem& problem, const Pipe& pipe, 
   options.check();
   const detail::GraspVariables grasps(pipe, options.grasp);
   ObjectPathEvaluator evaluator(problem, path_options);
+  const detail::TimeLimit time_limit(options.time_limit);
+  const Monitor timed{CancelToken(), monitor.progress};  // ends by time, too
   GraspOptimum out;
   out.unreachable.assign(problem.T_world_object.size(), 0);
   out.overloaded = out.colliding = out.unreachable;
+  out.jumping_after.assign(problem.T_world_object.size() - 1, 0);
+  out.colliding_after = out.jumping_after;
   PopulationProblem search;
   search.variables = grasps.variables();
   search.upper = [&](const Eigen::VectorXd& x, int i) {
@@ -86,12 +91,17 @@ GraspOptimum optimize_grasp(const ObjectPathProblem& problem, const Pipe& pipe, 
       out.colliding[i] += found.violations[i] == 1;
     }
     for (const int pose : found.overloaded) ++out.overloaded[pose];
+    for (std::size_t i = 0; i < found.gaps.size(); ++i) {
+      out.jumping_after[i] += found.gaps[i] == 1;
+      out.colliding_after[i] += found.gaps[i] == 2;
+    }
     if (found.outcome != Outcome::solved) return;
     grasp.cost = found.cost;
     out.feasible.push_back({grasp, found.joint_motion, found.deflection, found.force_manipulability});
   };
   std::function<double(const ObjectPathResult&)> value = [](const ObjectPathResult& found) { return found.cost; };
-  search.evaluate = [&](const Eigen::VectorXd& x) {
+  search.evaluate = [&, stop = timed.stop](const Eigen::VectorXd& x) mutable {
+    if (monitor.stopped() || time_limit.expired()) stop.stop();
     const Grasp grasp = grasps.grasp(x);
     const ObjectPathResult found = evaluator.evaluate(grasp);
     count(grasp, found);
@@ -99,7 +109,7 @@ GraspOptimum optimize_grasp(const ObjectPathProblem& problem, const Pipe& pipe, 
   };
   const bool prove = options.algorithm == kBranchAndBound;
   const auto population = make_population_search(prove ? "bees" : options.algorithm);
-  const PopulationResult found = population->solve(search, options.population, monitor);
+  const PopulationResult found = population->solve(search, options.population, timed);
   out.history = found.history;
   // What fails the finer check is no candidate for anyone; the cheapest that passes is the answer.
   const auto check_first = [&] {
@@ -111,26 +121,26 @@ GraspOptimum optimize_grasp(const ObjectPathProblem& problem, const Pipe& pipe, 
       out.feasible.erase(out.feasible.begin());
     }
   };
-  bool stopped = found.outcome == Outcome::stopped;
   if (!out.feasible.empty()) {
     PopulationOptions further = options.population;
     further.target = PopulationOptions().target;
     for (const auto& objective : detail::front_objectives(out.feasible, options.front_searches)) {
-      if (stopped) break;
+      if (timed.stopped()) break;
       value = objective;
       ++further.seed;
-      stopped = population->solve(search, further, monitor).outcome == Outcome::stopped;
+      population->solve(search, further, timed);
     }
   }
   check_first();
-  if (prove && !stopped) {
+  if (prove && !timed.stopped()) {
     const double cost = out.feasible.empty() ? detail::kInfinity : out.path.cost;
-    const detail::BoxSearch boxes = detail::divide_boxes(problem, pipe, path_options, options, cost, count, monitor);
+    const detail::BoxSearch boxes =
+        detail::divide_boxes(problem, pipe, path_options, options, cost, count, time_limit, monitor);
     check_first();
     out.lower_bound = boxes.lower_bound;
     out.boxes = boxes.boxes;
-    stopped = boxes.stopped;
   }
+  const bool stopped = monitor.stopped();
   out.front = detail::pareto_front(out.feasible);
   if (out.feasible.empty()) {
     out.gap = 1;

@@ -165,6 +165,10 @@ BAD: list[tuple[str, Change, list[str]]] = [
     ("unknown material", put("structure", "material", value="coper"), ["structure.material = 'coper'", "did you mean copper?"]),
     ("no diameter", drop("structure", "outer_diameter"), ["sections[0]", "outer_diameter is missing"]),
     ("soft as nothing", put("structure", "materials", value={"air": {"density": 1, "youngs_modulus": 0, "shear_modulus": 1}}), ["materials.air.youngs_modulus = 0", "> 0"]),
+    ("in gigapascals", put("structure", "materials", value={"steel": {"density": 7850, "youngs_modulus": 210, "shear_modulus": 80}}), ["materials.steel.youngs_modulus = 210", "it is in Pa", "1 GPa is 1.0e9"]),
+    ("a copper of one's own", put("structure", "materials", value={"copper": {"density": 1, "youngs_modulus": 1e9, "shear_modulus": 1e9}}), ["materials.copper", "call another one otherwise"]),
+    ("no nodes", put("structure", "nodes", value=[]), ["structure.nodes = []", "must not be empty"]),
+    ("no load", put("structure", "loads", 0, value={"node": 6}), ["structure.loads[0]", "must have a mass, a force or a moment"]),
     ("load on no node", put("structure", "loads", 0, "node", value=7), ["loads[0].node = 7", "only 0 to 6"]),
     ("mass below zero", put("structure", "loads", 0, "mass", value=-1), ["loads[0].mass = -1", ">= 0"]),
     # the path
@@ -173,6 +177,8 @@ BAD: list[tuple[str, Change, list[str]]] = [
     ("only the start", put("path", value={"segments": []}), ["path", "at least two poses"]),
     ("no axis", put("path", "segments", 1, "arc", "axis", value=[0, 0, 0]), ["arc.axis", "other than 0, 0, 0"]),
     ("half a turn", put("path", "segments", 0, "line", value={"to": {"xyz": [0.4, -0.25, 0.3], "rpy": [3.1415926, 0, -0.6]}, "poses": 1}), ["path", "half a turn", "pose 0 to pose 1"]),
+    ("in degrees", put("start", "rpy", value=[0, 0, -34]), ["start.rpy = [0, 0, -34]", "in radians"]),
+    ("arc in degrees", put("path", "segments", 1, "arc", "angle", value=180), ["arc.angle = 180", "18 poses turn by half a turn or more"]),
     ("no poses", put("path", "segments", 0, "line", "poses", value=0), ["line.poses = 0", ">= 1"]),
     # grasps to compare
     ("no such section", put("compare", 0, "section", value=6), ["compare[0].section = 6", "only 0 to 5"]),
@@ -185,6 +191,9 @@ BAD: list[tuple[str, Change, list[str]]] = [
     ("no such weights", put("preferences", value={"weights": "p3"}), ["preferences.weights", "must be one of p2, p2_printed"]),
     ("nothing counts", put("preferences", value={"weights": {"motion": 0, "deflection": 0, "manipulability": 0}}), ["preferences.weights", "above zero"]),
     ("no limit", put("limits", "sag", value=0), ["limits.sag = 0", "> 0"]),
+    ("in megapascals", put("limits", "stress", value=33), ["limits.stress = 33", "1 MPa is 1.0e6"]),
+    ("hours", put("timing", "speed", value=1e-6), ["timing.speed = 1e-06", "at least 0.001"]),
+    ("nearly reciprocal", put("preferences", "comparison", value=[[1, 6, 2], [0.167, 1, 0.25], [0.5, 4, 1]]), ["preferences.comparison", "one over its opposite, 5.9880"]),
     ("too quick", put("timing", "speed", value=1.5), ["timing.speed = 1.5", "at most 1"]),
     # robot, world, options
     ("no robot", put("robot", value={"name": "kr6lik"}), ["kr6lik", "did you mean kr6like?"]),
@@ -293,7 +302,7 @@ def test_too_low_a_limit_is_said_with_the_pose(tmp_path: Path) -> None:
     plan = plan_pipe(load_pipe_problem(written(tmp_path, content)))
     assert plan.grasp is None
     assert min(plan.optimum.overloaded) == plan.optimum.evaluations
-    assert "bends or bears more than its limits with 300 of the 300 grasps tried" in plan.obstruction
+    assert "the pipe bears more stress than its material's limit with 300 of the 300 grasps tried" in plan.obstruction
 
 
 def test_a_pose_out_of_reach_is_named(tmp_path: Path) -> None:

@@ -206,7 +206,7 @@ def _read_timing(root: Node) -> tuple[float, float]:
             if key in node:
                 shares[i] = node[key].number()
                 if not SLOWEST <= shares[i] <= 1:
-                    node[key].fail(f"must be a share of the joints' own limits, from {SLOWEST:g} to 1")
+                    node[key].fail(f"must be at least {SLOWEST:g} and at most 1, the joints' own limits")
     return shares[0], shares[1]
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 from .._core import CollisionChecker, Error, Grasp, JointTrajectory, time_parameterize
@@ -84,38 +86,52 @@ def _is_free(checker: CollisionChecker, trajectory: JointTrajectory) -> bool:
 
 
 def path_error(path: np.ndarray, poses: np.ndarray, scales: tuple[float, float]) -> tuple[float, float]:
-    """How far poses (n, 4, 4) that follow a path (m, 4, 4) in its order, from its first pose to its last, get away from it: largest distance [m] and angle [rad].
+    """How far a motion through poses (n, 4, 4) and a path (m, 4, 4), both straight from pose to pose, get away from each other: largest distance [m] and angle [rad].
 
-    Each is compared with the nearest place of one of the path's straight pieces, never of an earlier piece than the pose
-    before: of all such ways to go along, the one with the least sum of errors, in shares of `scales`.
+    Both are gone along from begin to end, never back: each pose is compared with the nearest place of a piece of the
+    path, and each pose of the path with the nearest place of the motion where that goes from one piece on to the next.
+    Of all such ways the one with the least sum of errors counts, in shares of `scales`.
     """
-    errors = np.array([_errors(path[j], path[j + 1], poses, scales) for j in range(len(path) - 1)])  # (m - 1, 2, n)
-    shares = np.max(errors / np.reshape(scales, (1, 2, 1)), axis=1)
-    least = np.full(len(path) - 1, np.inf)
-    least[0] = shares[0, 0]
+    limits = np.reshape(scales, (1, 2, 1))
+    of_pose = np.array([_errors(a[None], b[None], poses, scales) for a, b in pairwise(path)])  # (m - 1, 2, n)
+    of_node = np.array([_errors(poses[:-1], poses[1:], T[None], scales) for T in path[1:-1]]).reshape(
+        -1, 2, len(poses) - 1
+    )
+    shares = np.max(of_pose / limits, axis=1)
+    passing = np.max(of_node / limits, axis=1)
+    least = np.concatenate(
+        [[0.0], np.cumsum(np.max(_errors(poses[:1], poses[:1], path[1:-1], scales) / limits[0], axis=0))]
+    )
+    least = least + shares[:, 0]
     before = np.zeros(shares.shape, int)
     for k in range(1, shares.shape[1]):
-        so_far = np.minimum.accumulate(least)
-        falls = np.concatenate([[True], least[1:] < so_far[:-1]])
+        onward = np.concatenate([[0.0], np.cumsum(passing[:, k - 1])])  # what passing the nodes before a piece costs
+        ahead = least - onward
+        falls = np.concatenate([[True], ahead[1:] < np.minimum.accumulate(ahead)[:-1]])
         before[:, k] = np.maximum.accumulate(np.where(falls, np.arange(len(least)), 0))
-        least = so_far + shares[:, k]
+        least = ahead[before[:, k]] + onward + shares[:, k]
     piece = len(least) - 1
     worst = np.zeros(2)
-    for k in range(shares.shape[1] - 1, -1, -1):
-        worst = np.maximum(worst, errors[piece, :, k])
-        piece = before[piece, k]
+    for k in range(shares.shape[1] - 1, 0, -1):
+        last = int(before[piece, k])
+        worst = np.maximum(worst, of_pose[piece, :, k])
+        worst = np.maximum(worst, of_node[last:piece, :, k - 1].max(axis=0, initial=0))
+        piece = last
+    begin = np.concatenate([of_pose[piece, :, :1], _errors(poses[:1], poses[:1], path[: piece + 1], scales)], axis=1)
+    end = _errors(poses[-1:], poses[-1:], path[-1:], scales)
+    worst = np.max(np.concatenate([worst[:, None], begin, end], axis=1), axis=1)
     return float(worst[0]), float(worst[1])
 
 
 def _errors(a: np.ndarray, b: np.ndarray, poses: np.ndarray, scales: tuple[float, float]) -> np.ndarray:
-    """Distances and angles (2, n) of poses from the straight way between two."""
-    way, turn = b[:3, 3] - a[:3, 3], rotation_vector(a[:3, :3].T @ b[:3, :3])
+    """Distances and angles (2, n) of poses (n, 4, 4) from the straight ways from a to b; one of the three may be several."""
+    way, turn = b[:, :3, 3] - a[:, :3, 3], rotation_vectors(np.swapaxes(a[:, :3, :3], 1, 2) @ b[:, :3, :3])
     weight = (scales[0] / scales[1]) ** 2  # [m2/rad2] turns count where the pipe hardly moves
-    turned = rotation_vectors(a[:3, :3].T @ poses[:, :3, :3])
-    along = (poses[:, :3, 3] - a[:3, 3]) @ way + weight * (turned @ turn)
-    share = np.clip(along / max(way @ way + weight * (turn @ turn), 1e-15), 0, 1)
-    off = poses[:, :3, 3] - (a[:3, 3] + share[:, None] * way)
-    at = a[:3, :3] @ rotations_about(share[:, None] * turn)
+    turned = rotation_vectors(np.swapaxes(a[:, :3, :3], 1, 2) @ poses[:, :3, :3])
+    along = np.sum((poses[:, :3, 3] - a[:, :3, 3]) * way + weight * turned * turn, axis=1)
+    share = np.clip(along / np.maximum(np.sum(way * way + weight * turn * turn, axis=1), 1e-15), 0, 1)[:, None]
+    off = poses[:, :3, 3] - (a[:, :3, 3] + share * way)
+    at = a[:, :3, :3] @ rotations_about(share * turn)
     angles = np.linalg.norm(rotation_vectors(np.swapaxes(at, 1, 2) @ poses[:, :3, :3]), axis=1)
     return np.array([np.linalg.norm(off, axis=1), angles])
 

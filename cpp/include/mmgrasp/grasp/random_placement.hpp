@@ -22,6 +22,7 @@ struct MMGRASP_EXPORT RestingPose {
 /// overlap count twice. Throws InvalidInput for an empty or flat body or a plane.
 MMGRASP_EXPORT std::vector<RestingPose> resting_poses(const std::vector<LinkShape>& part);
 
+/// How many parts random_placement() puts into a tray, whether on top of one another, and how long it looks for room.
 struct MMGRASP_EXPORT PlacementOptions {
   int count = 12;             ///< Parts wanted; >= 0. P1's fill of 75 % of a tray for twelve is nine.
   int attempts = 100;         ///< Random places tried for each part; > 0.
@@ -31,12 +32,14 @@ struct MMGRASP_EXPORT PlacementOptions {
   void check() const;
 };
 
+/// Where a part lies in its tray, and which of its resting_poses() it took.
 struct MMGRASP_EXPORT PlacedPart {
   Pose T_tray_part = Pose::Identity();
   int resting_pose = 0;
   bool on_floor = true;  ///< False: it lies on others.
 };
 
+/// The parts that found room in a tray, and how many did not.
 struct MMGRASP_EXPORT RandomPlacement {
   std::vector<PlacedPart> parts;
   int not_placed = 0;  ///< For which no place was found.

@@ -12,6 +12,7 @@
 
 namespace mmgrasp {
 
+/// When an NlpSolver takes a point for optimal and feasible, its budget, and how Ipopt's barrier is lowered.
 struct MMGRASP_EXPORT NlpOptions {
   double tolerance = 1e-7;             ///< Relative optimality, in (0, 1).
   double constraint_tolerance = 1e-8;  ///< Largest violation of a solved problem; > 0.
@@ -23,6 +24,7 @@ struct MMGRASP_EXPORT NlpOptions {
   void check() const;
 };
 
+/// Where an NlpSolver ended: the point, its objective, and by how much it breaks constraints.
 struct MMGRASP_EXPORT NlpResult {
   /// solved: locally optimal and every constraint kept. approximate: every constraint kept, optimality not shown.
   /// not_found: the solver ended at a point that breaks constraints. timeout: iterations or clock. stopped.

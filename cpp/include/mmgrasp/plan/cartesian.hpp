@@ -9,12 +9,14 @@
 
 namespace mmgrasp {
 
+/// Steps along the lines of a Cartesian path, and how many configurations of its first pose are tried.
 struct MMGRASP_EXPORT CartesianOptions {
   StraightLineOptions line;  ///< For each line; a jump of the joints ends a branch.
   int max_branches = 64;     ///< Configurations of the first pose tried at most; > 0.
   void check() const;
 };
 
+/// Joint path along all lines, or how far the best branch came and what ended it there.
 struct MMGRASP_EXPORT CartesianResult {
   Outcome outcome = Outcome::not_found;
   std::optional<JointPath> path;  ///< Begins at the first pose, ends at the last; set if and only if solved.

@@ -49,6 +49,7 @@ struct MMGRASP_EXPORT DriveByGoal {
   Eigen::VectorXd lower, upper;  ///< Box of end configurations; equal: prescribed, infinite: free.
 };
 
+/// Waypoints of a motion in passing, and how many guesses and grasp assignments plan_drive_by() tries for it.
 struct MMGRASP_EXPORT DriveByOptions {
   int waypoints = 35;  ///< >= 2 + 2 per task, 2 + 6 per push-grasp.
   int seeds = 8;       ///< Guesses tried until one leads to a solution; > 0.
@@ -80,6 +81,7 @@ struct MMGRASP_EXPORT DriveByEvent {
   double tool_speed = 0;                 ///< Speed of the tip at the waypoint [m/s].
 };
 
+/// A motion of base and arm through all tasks, what happens at each, and what it breaks if anything.
 struct MMGRASP_EXPORT DriveByResult {
   Outcome outcome = Outcome::not_found;
   std::shared_ptr<const WholeBodyTrajectory> trajectory;  ///< Null when there was not even a guess.

@@ -39,6 +39,7 @@ using PickingOrder = std::vector<std::vector<int>>;
 /// round without a partner is -1, and parts left over take rounds in which the tray before has none.
 MMGRASP_EXPORT PickingOrder paired_order(const std::vector<std::vector<Eigen::Vector2d>>& places);
 
+/// What a picking order should make large, and how many orders optimised_order() tries.
 struct MMGRASP_EXPORT OrderOptions {
   bool smallest_first = false;      ///< Maximise the smallest radius over the rounds, then their sum; else the sum.
   int restarts = 20;                ///< Random orders to start from, where a search is needed; >= 0.
@@ -47,6 +48,7 @@ struct MMGRASP_EXPORT OrderOptions {
   void check() const;
 };
 
+/// A picking order, and how large the discs are in which the base may stop for its rounds.
 struct MMGRASP_EXPORT OptimisedOrder {
   PickingOrder order;
   double mean_radius = 0;      ///< Over rounds and groups [m].
@@ -83,6 +85,7 @@ struct MMGRASP_EXPORT PolicyResult {
   bool feasible = false;  ///< All three.
 };
 
+/// How the stops of each round are planned, and how long that may take between two rounds.
 struct MMGRASP_EXPORT PolicyOptions {
   StopOptions stops;
   double online_limit = 1.0;  ///< Seconds that may pass between two rounds; > 0.

@@ -28,7 +28,7 @@ struct MMGRASP_EXPORT WholeBodyGuess {
   bool keeps_sides = true;
 };
 
-/// Options of optimize_whole_body().
+/// When optimize_whole_body() ends, how smooth its motion is, and how far it keeps from obstacles.
 struct MMGRASP_EXPORT WholeBodyOptions {
   std::string solver = "ipopt";       ///< A name of nlp_solver_names().
   double tolerance = 1e-4;            ///< Relative optimality, in (0, 1).

@@ -22,11 +22,13 @@ struct MMGRASP_EXPORT CheckedBody {
   Pose T_world_body = Pose::Identity();
 };
 
+/// A grasp that the plan may use for a part: where the tool frame is in the part, and how far the hand is open.
 struct MMGRASP_EXPORT CheckedGrasp {
   Pose T_object_hand = Pose::Identity();
   double opening = 0;  ///< Between the pads while holding [m].
 };
 
+/// A part in its tray, with the grasps that the plan lists for it.
 struct MMGRASP_EXPORT CheckedPart {
   CheckedBody body;
   std::string tray;
@@ -34,11 +36,13 @@ struct MMGRASP_EXPORT CheckedPart {
   std::vector<CheckedGrasp> grasps;
 };
 
+/// A joint of the hand, and its values while the fingers are closed and open [rad or m].
 struct MMGRASP_EXPORT CheckedFinger {
   std::string joint;
   double closed = 0, open = 0;
 };
 
+/// One motion of the arm as the plan stores it: times [s] and the joints' values at them [rad or m, and per second].
 struct MMGRASP_EXPORT CheckedMotion {
   std::string kind;  ///< transit, approach, lift, transfer, retreat
   double opening = 0;
@@ -48,6 +52,7 @@ struct MMGRASP_EXPORT CheckedMotion {
   std::vector<Eigen::VectorXd> accelerations = {};  ///< Empty: not given.
 };
 
+/// How one part is picked at a stop: the grasp taken, as an index into the part's, and the arm's motions in order.
 struct MMGRASP_EXPORT CheckedPick {
   int stop = -1;
   std::string tray, part;
@@ -64,6 +69,7 @@ struct MMGRASP_EXPORT CheckedDriveBy {
   CheckedMotion motion;  ///< Rows hold x, y, theta, then the arm's joints; `opening` is that before closing.
 };
 
+/// A stop: base pose (x, y, theta), the disc in which it may come to stand [m], and the trays it serves.
 struct MMGRASP_EXPORT CheckedStop {
   Eigen::Vector3d pose = Eigen::Vector3d::Zero();
   double radius = 0;
@@ -71,11 +77,13 @@ struct MMGRASP_EXPORT CheckedStop {
   int arrivals = 0, arrivals_served = 0;  ///< Arrivals that the planner drew, and those that served all parts.
 };
 
+/// The base region that the plan claims for a tray: flags of the cells that serve all its target parts.
 struct MMGRASP_EXPORT CheckedRegion {
   std::string tray;
   std::vector<std::uint8_t> cells;  ///< (heading * ny + iy) * nx + ix
 };
 
+/// The square cells over the floor that base regions are made of, one layer for each heading, as a BaseGrid.
 struct MMGRASP_EXPORT CheckedGrid {
   Eigen::Vector2d origin = Eigen::Vector2d::Zero();
   double resolution = 0.05;
@@ -167,6 +175,7 @@ struct MMGRASP_EXPORT PlanToCheck {
   double robustness_rate = std::numeric_limits<double>::quiet_NaN();  ///< NaN: not given.
 };
 
+/// How finely check_plan() looks at motions and regions, and from where on a difference is a fault.
 struct MMGRASP_EXPORT PlanCheckOptions {
   double joint_step = 0.01;          ///< Arm paths are checked at least this finely [rad or m]; > 0.
   double base_step = 0.01;           ///< The route [m, and rad x 2]; > 0.
@@ -226,6 +235,7 @@ struct MMGRASP_EXPORT StopRate {
   std::string worst_part;
 };
 
+/// The faults of a plan, and what the checker found again by itself: rates of the stops, least number of stops.
 struct MMGRASP_EXPORT PlanCheckResult {
   std::vector<Fault> faults;  ///< Empty: the plan holds.
   std::vector<StopRate> rates;

@@ -7,7 +7,7 @@
 
 #include "mmgrasp/core/export.hpp"
 #include "mmgrasp/robot/robot_source.hpp"
-#include "mmgrasp/verify/plan_check.hpp"
+#include "mmgrasp/verify/plan_to_check.hpp"
 
 namespace mmgrasp::verify {
 

@@ -112,4 +112,10 @@ using Said = int;
 """
     )
     assert missing(tmp_path) == ["some.hpp:8: Bare", "some.hpp:18: Thin", "some.hpp:19: Alias"]
-    assert [name for name, _ in public_types((tmp_path / "some.hpp").read_text())] == ["Bare", "Documented", "Thin", "Alias", "Said"]
+    assert [name for name, _ in public_types((tmp_path / "some.hpp").read_text())] == [
+        "Bare",
+        "Documented",
+        "Thin",
+        "Alias",
+        "Said",
+    ]

@@ -32,7 +32,7 @@ const std::vector<OptionField<GraspabilityOptions>>& graspability_fields() {
 const std::vector<OptionField<PlacementOptions>>& placement_fields() {
   using O = PlacementOptions;
   static const std::vector<OptionField<O>> fields{
-      option<O>("attempts", &O::attempts, "random places tried for each part"),
+      option<O>("draws", &O::draws, "random places tried for each part"),
       option<O>("stack", &O::stack, "a part without a place on the floor may lie on others"),
       option<O>("clearance", &O::clearance, "air left between bodies [m]"),
       option<O>("seed", &O::seed, "same seed, same places")};

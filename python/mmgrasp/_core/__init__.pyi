@@ -6733,13 +6733,13 @@ def quat_xyzw_from_rotation(R: numpy.typing.ArrayLike) -> numpy.typing.NDArray[n
     """
     Quaternion (x, y, z, w) of a (3, 3) rotation.
     """
-def random_placement(part: collections.abc.Sequence[LinkShape], tray_size: numpy.typing.ArrayLike, *, count: int = 12, fill: float = 1.0, wall: float = 0.005, attempts: int = 100, stack: bool = True, clearance: float = 0.0005, seed: int = 1) -> RandomPlacement:
+def random_placement(part: collections.abc.Sequence[LinkShape], tray_size: numpy.typing.ArrayLike, *, count: int = 12, fill: float = 1.0, wall: float = 0.005, draws: int = 100, stack: bool = True, clearance: float = 0.0005, seed: int = 1) -> RandomPlacement:
     """
     Alike parts lying in a tray at random (P1 3.5.2), let down one after another without touching; `fill` is the share
     of `count` that is there. The tray's frame is the middle of its floor, `tray_size` are outer lengths.
     
     Keyword options:
-        attempts: int = 100  # random places tried for each part
+        draws: int = 100  # random places tried for each part
         stack: bool = True  # a part without a place on the floor may lie on others
         clearance: float = 0.0005  # air left between bodies [m]
         seed: int = 1  # same seed, same places

@@ -25,7 +25,7 @@ MMGRASP_EXPORT std::vector<RestingPose> resting_poses(const std::vector<LinkShap
 /// How many parts random_placement() puts into a tray, whether on top of one another, and how long it looks for room.
 struct MMGRASP_EXPORT PlacementOptions {
   int count = 12;             ///< Parts wanted; >= 0. P1's fill of 75 % of a tray for twelve is nine.
-  int attempts = 100;         ///< Random places tried for each part; > 0.
+  int draws = 100;            ///< Random places tried for each part; > 0.
   bool stack = true;          ///< A part that finds no place on the floor may lie on others, no higher than the walls.
   double clearance = 0.0005;  ///< Left under parts on the floor and, at most, under those on others [m]; > 0.
   unsigned seed = 1;          ///< Same seed, same places.
@@ -42,7 +42,7 @@ struct MMGRASP_EXPORT PlacedPart {
 /// The parts that found room in a tray, and how many did not.
 struct MMGRASP_EXPORT RandomPlacement {
   std::vector<PlacedPart> parts;
-  int not_placed = 0;  ///< For which no place was found.
+  int not_placed = 0;  ///< Parts for which no place was found.
 };
 
 /// Alike parts lying in a tray at random (P1 3.5.2, 3.7.2), without physics: one after another each takes a resting

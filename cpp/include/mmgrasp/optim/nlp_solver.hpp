@@ -30,8 +30,8 @@ struct MMGRASP_EXPORT NlpResult {
   /// not_found: the solver ended at a point that breaks constraints. timeout: iterations or clock. stopped.
   Outcome outcome = Outcome::not_found;
   Eigen::VectorXd x;       ///< The answer, or the best iterate: the least violated, then the cheapest. Always finite.
-  double objective = 0;    ///< At x.
-  NlpViolations violated;  ///< At x.
+  double objective = 0;    ///< Its value at x.
+  NlpViolations violated;  ///< Constraints that x breaks.
   int iterations = 0;      ///< Iterations of Ipopt, or evaluations of SLSQP.
   double seconds = 0;
   std::string message;  ///< How the solver itself put it.

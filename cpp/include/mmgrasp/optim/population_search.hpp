@@ -81,7 +81,7 @@ struct MMGRASP_EXPORT PopulationResult {
   /// solved: the target was met. timeout: the budget ended it, and says nothing about how good x is. stopped.
   Outcome outcome = Outcome::timeout;
   Eigen::VectorXd x;       ///< The best point seen.
-  ConstrainedValue value;  ///< There.
+  ConstrainedValue value;  ///< What it is worth.
   int evaluations = 0;
   std::vector<double> history;  ///< Best objective after each evaluation; infinite while nothing was feasible.
 };

@@ -74,8 +74,8 @@ struct MMGRASP_EXPORT GraspOptimum {
   /// Poses in order, each with how many of the grasps tried could not reach it and at how many all arm configurations
   /// collided.
   std::vector<int> unreachable, colliding;
-  std::vector<int>
-      overloaded;  ///< For each pose: with how many of them the pipe bends or bears more than it may there.
+  /// Poses in order, each with how many of the grasps tried make the pipe bend or bear more than it may there.
+  std::vector<int> overloaded;
 };
 
 /// The feasible grasps, each with its mean sag after the first pose [m] as its cost: for plan_manipulation with

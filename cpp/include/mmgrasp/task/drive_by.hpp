@@ -41,7 +41,8 @@ struct MMGRASP_EXPORT DriveByTask {
   /// fingers alone may touch it, and once attached it keeps clear of everything. One that rests on something counts as
   /// 1 mm higher from then on.
   std::string object;
-  std::optional<DriveByPush> push;  ///< Without dwell, max_tool_speed, tolerance and free axes.
+  std::optional<DriveByPush>
+      push;  ///< A push-grasp at the task, which then has no dwell, max_tool_speed, tolerance or free axes.
 };
 
 /// Where the motion ends.
@@ -63,7 +64,7 @@ struct MMGRASP_EXPORT DriveByOptions {
   double jerk_time = 0;          ///< See WholeBodyProblem [s], >= 0; 0: no limit on jerk.
   bool collisions = true;        ///< The robot keeps clear of the world and of itself.
   unsigned seed = 1;             ///< Same seed, same answer.
-  int threads = 1;               ///< For the search of configurations; 0: all.
+  int threads = 1;               ///< Threads that search configurations; 0: all.
   WholeBodyOptions trajectory;
   void check() const;
 };

@@ -51,7 +51,8 @@ struct MMGRASP_EXPORT PickOptions {
 
 /// An object of a world that an arm is to pick, whatever it is and wherever it lies.
 struct MMGRASP_EXPORT PickProblem {
-  /// Without base joints, its root where the robot stands (JointGroup::at); its reference holds the other joints (head,
+  /// A group without base joints, its root where the robot stands (JointGroup::at); its reference holds the other
+  /// joints (head,
   /// ...) and the fingers at rest.
   JointGroup arm;
   Hand gripper;

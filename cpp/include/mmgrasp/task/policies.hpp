@@ -20,7 +20,7 @@ MMGRASP_EXPORT const char* to_string(UpdatePolicy policy);
 /// "all", "remaining" or "targets"; throws InvalidInput naming these on anything else.
 MMGRASP_EXPORT UpdatePolicy make_update_policy(const std::string& name);
 
-/// From where each part can be grasped: one bitmap a part, by tray.
+/// Base poses from which each part can be grasped: one bitmap a part, by tray.
 struct MMGRASP_EXPORT PartRegions {
   BaseGrid grid;
   std::vector<std::vector<CellMask>> cells;  ///< [tray][part]
@@ -51,8 +51,8 @@ struct MMGRASP_EXPORT OrderOptions {
 /// A picking order, and how large the discs are in which the base may stop for its rounds.
 struct MMGRASP_EXPORT OptimisedOrder {
   PickingOrder order;
-  double mean_radius = 0;      ///< Over rounds and groups [m].
-  double smallest_radius = 0;  ///< [m]
+  double mean_radius = 0;      ///< Mean radius of the discs, over rounds and groups [m].
+  double smallest_radius = 0;  ///< Smallest of these radii [m].
   bool proven = true;          ///< No other order is better for these groups.
 };
 
@@ -77,7 +77,7 @@ struct MMGRASP_EXPORT PolicyRound {
 struct MMGRASP_EXPORT PolicyResult {
   std::vector<PolicyRound> rounds;
   double mean_radius = 0;      ///< P1 equation 3.2 [m].
-  double smallest_radius = 0;  ///< Over all stops of all rounds [m].
+  double smallest_radius = 0;  ///< Smallest disc of all stops of all rounds [m].
   double mean_stops = 0;
   bool solved = false;    ///< Every round has stops.
   bool reliable = false;  ///< Every round is.

@@ -81,7 +81,7 @@ class Placer {
   std::optional<PlacedPart> place() {
     for (const bool on_others : {false, true}) {
       if (on_others && !options_.stack) break;
-      for (int i = 0; i < options_.attempts; ++i) {
+      for (int i = 0; i < options_.draws; ++i) {
         std::optional<PlacedPart> found = drop(on_others);
         if (found) {
           keep(*found);
@@ -181,7 +181,7 @@ class Placer {
 
 void PlacementOptions::check() const {
   require(count >= 0, "count", count, "must be zero or positive");
-  require(attempts > 0, "attempts", attempts, "must be positive");
+  require(draws > 0, "draws", draws, "must be positive");
   require(std::isfinite(clearance) && clearance > 0, "clearance", clearance, "must be positive and finite [m]");
 }
 

@@ -46,7 +46,7 @@ class Bees : public PopulationSearch {
           if (++site.without_progress >= o.stagnation_limit && !run.done()) site = scout();
         }
       }
-      // As many evaluations a round as at the beginning: ns - ne nre - (nb - ne) nrb scouts.
+      // Keeps the number of evaluations a round as at the beginning: ns - ne nre - (nb - ne) nrb scouts.
       for (; used < o.population && !run.done(); ++used) sites.push_back(scout());
     }
   }

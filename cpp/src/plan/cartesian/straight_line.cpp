@@ -37,7 +37,7 @@ class CartesianLine {
   Eigen::Quaterniond rotation_from_, rotation_to_;
 };
 
-/// At least one, and few enough to count in 64 bits.
+/// Number of steps: at least one, and few enough to count in 64 bits.
 std::int64_t step_count(double steps) {
   return static_cast<std::int64_t>(std::clamp(std::ceil(steps), 1.0, 1e15));
 }

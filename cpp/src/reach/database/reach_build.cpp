@@ -72,7 +72,8 @@ class Builder {
  private:
   Monitor silent() const { return Monitor{monitor_.stop, {}}; }
 
-  /// From the first blocks, so that every sample is measured against the same threshold.
+  /// Takes the largest manipulability from the first blocks, so that every sample is measured against the same
+  /// threshold.
   bool estimate_manipulability() {
     if (options_.min_manipulability <= 0 && options_.thinning <= 0) return !monitor_.stopped();
     std::vector<double> largest(std::min(kManipulabilityBlocks, blocks_), 0);

@@ -111,8 +111,8 @@ class DiscSearch {
     return false;
   }
 
-  /// From the middle of every cell of the region to the nearest cell of the complement: along rows first, then the
-  /// least over the rows.
+  /// Squared distance from the middle of each cell of the region to the nearest cell of the complement: along rows
+  /// first, then the least over the rows.
   std::vector<double> squared_distances() const {
     const auto gap = [](int steps) { return squared(std::max(steps - 0.5, 0.0)); };
     std::vector<int> along(cells_.size());  // steps within the row

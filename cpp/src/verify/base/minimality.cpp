@@ -176,7 +176,7 @@ class StopsCheck {
     return floor_.clearance(region, layer, point, std::min(radius + 1e-3, limit));
   }
 
-  /// At least `least` stops are needed, `enough` suffice; negative: no number of them.
+  /// Judges the number of stops: at least `least` are needed, `enough` suffice; negative: no number of them.
   void judge_count(int least, int enough) {
     const int stops = static_cast<int>(plan_.stops.size());
     if (least < 0) {

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kSamePose = 1e-6;     // Poses that differ by no more are the same [m, rad].
 constexpr double kLimitSlack = 1e-5;   // [rad or m]; what limits and values printed to five digits lose
-constexpr double kLargest = 1e6;       // Beyond this a pose is no number to compute with [m, rad].
+constexpr double kLargest = 1e6;       // No larger pose can be computed with [m, rad].
 constexpr double kMaxSteps = 1000000;  // Base poses of one leg.
 
 bool same_pose(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {

@@ -18,7 +18,7 @@ struct ModelJoint {
   std::string name;
   JointKind kind = JointKind::fixed;
   int parent = -1, child = -1;        ///< Link indices.
-  KDL::Frame T_parent_child;          ///< With the joint at zero.
+  KDL::Frame T_parent_child;          ///< Pose of the child while the joint is at zero.
   KDL::Vector axis = {1, 0, 0};       ///< Unit, in the child's frame.
   double lower = 0, upper = 0;        ///< [rad] or [m]; infinite where there is no limit.
   double velocity = 0;                ///< [rad/s] or [m/s]

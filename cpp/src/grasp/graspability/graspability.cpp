@@ -70,7 +70,7 @@ class Evaluation {
 
   ItemResult evaluate(std::size_t index) const {
     const Item& item = items_[index];
-    const auto& masks = masks_[static_cast<std::size_t>(item.orientation) * openings_.size() + item.opening];
+    const auto& masks = masks_[item.orientation * openings_.size() + item.opening];
     const detail::TipLayer& layer = layers_[item.layer];
     const detail::LayerMap map = detail::layer_map(layer, masks, in_cells(options_.smoothing, map_.resolution) / 2);
     ItemResult result;

@@ -63,8 +63,8 @@ class MMGRASP_EXPORT TreeIndex {
     int block = -1, slot = 0;
   };
 
-  double* coordinates(int block) { return values_.data() + static_cast<std::size_t>(block) * block_size_; }
-  const double* coordinates(int block) const { return values_.data() + static_cast<std::size_t>(block) * block_size_; }
+  double* coordinates(int block) { return values_.data() + block * block_size_; }
+  const double* coordinates(int block) const { return values_.data() + block * block_size_; }
   int new_block();
   void insert_wrapped(int id, const double* q);
   void put(int block, int id, const double* q);

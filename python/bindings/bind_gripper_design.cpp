@@ -6,6 +6,7 @@
 #include "bindings.hpp"
 #include "given.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
+#include "mmgrasp/grasp/hand.hpp"
 #include "mmgrasp/gripper_design/minimal_grippers.hpp"
 
 namespace mmgrasp::python {
@@ -129,6 +130,12 @@ void bind_gripper(py::module_& m) {
       .def(
           "holds", [](const G& g, const Given<SegmentRequirement>& r) { return g.holds(taken(r, "requirement")); },
           "requirement"_a, "Whether it holds a segment: (5.2) of P1 with <= in place of <, to 1e-9 m.")
+      .def(
+          "hand", &G::hand,
+          "The Hand that it is, for planners and samplers: tool frame \"tool\", names as to_urdf() writes them. Of two "
+          "fingers only (InvalidInput): a Hand has pads that stand opposite each other. Mounted under a prefix, read "
+          "it "
+          "by Hand.from_robot().")
       .def(
           "finger_mesh", [](const G& g) { return MeshShape{g.finger_mesh()}; },
           "One finger to print: closed, convex, on the palm at z = 0, its pad in the plane x = 0 [m].")

@@ -101,6 +101,7 @@ Eigen::Isometry3d height_frame(const Pose& T_parent_tool) {
   return flip * T_parent_tool.inverse();
 }
 
+/// Collects from every part, over the whole operation, how high it stands under fingers and palm.
 class Range {
  public:
   Range(const AssemblyGrasp& grasp, const AssemblyOperation& operation, double step)

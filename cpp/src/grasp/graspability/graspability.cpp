@@ -45,6 +45,7 @@ double line_angle(double a, double b) {
   return d;
 }
 
+/// Every closing direction, opening and fingertip height as one item of work; the best places of all are kept apart.
 class Evaluation {
  public:
   Evaluation(const HeightMap& map, const Hand& hand, const GraspabilityOptions& options)

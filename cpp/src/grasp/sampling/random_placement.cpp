@@ -52,6 +52,7 @@ Eigen::AlignedBox3d bounds_of(const std::vector<LinkShape>& shapes, const Pose& 
   return box;
 }
 
+/// Fills a tray part by part: each falls from a random place until it meets the floor or another part.
 class Placer {
  public:
   Placer(const std::vector<LinkShape>& part, const Vector3d& tray_size, double wall, const PlacementOptions& options)

@@ -34,6 +34,7 @@ struct WindowFit {
 /// More than noise makes of it in a window of this size.
 constexpr float kGoodFit = 1.4f;
 
+/// Fits a plane to the neighbours of every pixel on the same surface, and finds how uncertain its depth is.
 class PlaneFitter {
  public:
   PlaneFitter(const DepthImage& image, const DepthCamera& camera, const FrameUncertainty& uncertainty,

@@ -12,6 +12,7 @@ struct Site {
   int without_progress = 0;
 };
 
+/// Recruits search around the best sites; sites without progress shrink and are left in the end; scouts draw new ones.
 class Bees : public PopulationSearch {
  public:
   std::string name() const override { return "bees"; }

@@ -101,6 +101,7 @@ std::vector<std::vector<int>> components(const SetCoverProblem& problem) {
   return lists;
 }
 
+/// Divides and conquers: reductions, independent components, Lagrangian prices, then branch and bound with CBC.
 class Solver {
  public:
   Solver(double time_limit, const Monitor& monitor) : time_limit_(std::min(time_limit, 1e6)), monitor_(monitor) {}

@@ -17,6 +17,7 @@ constexpr double kGain = 1e-9;  // Relative: less is rounding.
 
 using Orders = std::vector<std::vector<int>>;
 
+/// Exact for few stops, by subsets; for more, one tour is cut up and stops change robots while that helps.
 class Sharing {
  public:
   Sharing(const Eigen::MatrixXd& drive_times, const std::vector<double>& stop_times, int robots)

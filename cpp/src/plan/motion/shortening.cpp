@@ -19,6 +19,7 @@ struct PathPoint {
   Eigen::VectorXd q;
 };
 
+/// Shortens a path in place by shortcuts that are free, of all joints and of one, at random places.
 class Shortener {
  public:
   Shortener(MotionEdges& edges, Waypoints& waypoints, Rng& rng, const ShorteningOptions& options)

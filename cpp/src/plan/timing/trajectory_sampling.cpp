@@ -33,6 +33,7 @@ struct Sample {
   State state;
 };
 
+/// Samples a timed path so densely that cubics between the samples keep the limits, too.
 class Sampler {
  public:
   Sampler(const PathTiming& timing, const Eigen::VectorXd& velocity_limits, const Eigen::VectorXd& acceleration_limits)

@@ -21,6 +21,7 @@ constexpr int kFewIterations = 25;
 constexpr int kFewShare = 4;          // of the sampled values of free joints, every fourth is tried everywhere
 constexpr double kFirstShare = 0.75;  // of the time, roughly: for the progress report
 
+/// The three passes over all voxels and poses, and the configurations that they found.
 class Builder {
  public:
   Builder(const JointGroup& arm, const World& world, const Monitor& monitor, Data& data, const CapabilityMap* within)

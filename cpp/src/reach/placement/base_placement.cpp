@@ -182,6 +182,7 @@ class Examiner {
   Eigen::Vector3d stands_ = Eigen::Vector3d::Constant(std::nan(""));
 };
 
+/// Lets the database vote for base poses, checks the best exactly and improves the best of these by smaller steps.
 class PlacementSearch {
  public:
   PlacementSearch(const ReachDatabase& database, const JointGroup& arm, const Poses& targets,

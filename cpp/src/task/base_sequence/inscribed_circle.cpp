@@ -49,6 +49,7 @@ struct Room {
   std::vector<Cell> blocked;     // complement cells that are nearest to some point of the cell
 };
 
+/// Branch and bound for the largest disc in a union of cells: squares of centres are split, the most promising first.
 class DiscSearch {
  public:
   DiscSearch(int nx, int ny, const std::vector<std::uint8_t>& cells) : nx_(nx), ny_(ny), cells_(cells) {}

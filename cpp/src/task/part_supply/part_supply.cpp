@@ -52,6 +52,8 @@ class StageClock {
   Stopwatch stopwatch_;
 };
 
+/// The stages of a part-supply plan in order: base regions, stops, picks, route. A stage that fails leaves its
+/// obstructions.
 class PartSupply {
  public:
   PartSupply(const PartSupplyProblem& problem, const ReachDatabase& database, const Monitor& monitor)

@@ -45,6 +45,7 @@ std::vector<const CheckedRegion*> usable_regions(const PlanToCheck& plan, Faults
   return usable;
 }
 
+/// Holds the plan's stops against its regions: where they stand, how much room they have, whether fewer would do.
 class StopsCheck {
  public:
   StopsCheck(const Context& context, std::vector<const CheckedRegion*> regions, Faults& faults)

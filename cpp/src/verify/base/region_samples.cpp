@@ -98,6 +98,7 @@ std::vector<T> drawn(const std::vector<T>& all, int count, Rng& rng) {
   return some;
 }
 
+/// Draws base poses inside a region, which must serve its tray, and cells beside it, which must not.
 class RegionCheck {
  public:
   RegionCheck(const Context& context, Faults& faults, GraspSearch search, Rng rng)

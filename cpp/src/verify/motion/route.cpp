@@ -61,6 +61,7 @@ bool values_hold(const CheckedLegValues& said, const std::vector<Eigen::Vector3d
   return same(said.length, length) && same(said.turning, turning) && same(said.duration, duration);
 }
 
+/// Checks every leg of the route: its ends, whether the base can drive it, collisions, and what is said about it.
 class RouteCheck {
  public:
   RouteCheck(const Context& context, Judge& judge, Faults& faults)

@@ -13,6 +13,7 @@ constexpr int kFirstIterations = 64;    // RRT-Connect's budget per grasp in the
 constexpr int kTotalIterations = 4096;  // Budget for all grasps before the planner takes over.
 constexpr double kNoTimeLimit = 1e7;    // Limit of one RRT-Connect [s]: the call's own time limit ends it.
 
+/// Finds any first path: RRT-Connect for one grasp after the other, with budgets that double from round to round.
 class FirstTransfer {
  public:
   FirstTransfer(const ManipulationInput& input, ManipulationResult& result)

@@ -36,7 +36,7 @@ struct MMGRASP_EXPORT CuboidFitOptions {
 struct MMGRASP_EXPORT FittedCuboid {
   Pose T_world_box = Pose::Identity();             ///< Its centre; z along the plane's normal, x along the longer side.
   Eigen::Vector3d size = Eigen::Vector3d::Zero();  ///< [m]
-  int points = 0;                                  ///< That it was fitted to.
+  int points = 0;                                  ///< Number that it was fitted to.
   double fill = 0;  ///< Share of the top rectangle's area near which a point of the top was seen: how box-like it is.
 };
 

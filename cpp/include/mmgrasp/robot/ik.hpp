@@ -39,7 +39,7 @@ struct MMGRASP_EXPORT IkResult {
   /// closed form was refused.
   Outcome outcome = Outcome::not_found;
   Eigen::VectorXd q;          ///< Set if and only if solved; inside limits, verified by forward kinematics.
-  double position_error = 0;  ///< [m] of q, or of the best attempt.
+  double position_error = 0;  ///< [m] of q, or of the best descent.
   double rotation_error = 0;  ///< [rad]
   Rejections rejections;      ///< Descents that ended: unreachable, limits, or what `valid` said.
   double objective = 0;       ///< Sum of the objectives' costs at q; 0 without objectives.

@@ -54,7 +54,7 @@ struct MMGRASP_EXPORT Violation {
   bool kept() const { return value <= tolerance; }
 };
 
-/// A trajectory, how sure it is, and which constraints it breaks by how much.
+/// A trajectory, whether it is proven optimal, and which constraints it breaks by how much.
 struct MMGRASP_EXPORT WholeBodyResult {
   /// solved only after check_whole_body found every constraint kept; approximate: kept, optimality not shown.
   Outcome outcome = Outcome::not_found;

@@ -83,11 +83,11 @@ class Sampler {
   void append(Sample sample) {
     end_if_stopped(timing_.stop());
     const Sample& previous = samples_.back();
-    const double gap = sample.time - previous.time;
+    const double interval = sample.time - previous.time;
     const Load load = hermite_load(previous, sample);
     const bool beyond = std::max(load.velocity, load.acceleration) > 1;
-    if ((beyond || hides_acceleration(previous, sample)) && gap > kSmallestSplit) {
-      append(previous.time + 0.5 * gap);
+    if ((beyond || hides_acceleration(previous, sample)) && interval > kSmallestSplit) {
+      append(previous.time + 0.5 * interval);
       append(std::move(sample));
       return;
     }

@@ -31,7 +31,7 @@ struct ModelJoint {
 
 struct ModelLink {
   std::string name;
-  int joint = -1;  ///< That carries it; -1: the root.
+  int joint = -1;  ///< The joint that carries it; -1: the root.
   std::vector<int> child_joints;
   std::vector<LinkShape> shapes;
   bool shapes_left_out = false;  ///< Some of its meshes were not loaded by those who planned.

@@ -121,7 +121,7 @@ void bind_placement(py::module_& m) {
       .def_readonly("on_floor", &PlacedPart::on_floor, "False: it lies on others.")
       .def("__repr__", [](const PlacedPart& p) { return "PlacedPart(at " + text(p.T_tray_part.translation()) + ")"; });
   py::class_<RandomPlacement>(m, "RandomPlacement", "Parts lying in a tray at random.")
-      .def_readonly("parts", &RandomPlacement::parts, "In the order in which they were placed.")
+      .def_readonly("parts", &RandomPlacement::parts, "The parts in the order in which they were placed.")
       .def_readonly("not_placed", &RandomPlacement::not_placed, "Parts for which no place was found.")
       .def("__repr__",
            [](const RandomPlacement& p) { return "RandomPlacement(" + std::to_string(p.parts.size()) + " parts)"; });

@@ -175,7 +175,7 @@ void bind_object_path_result(py::module_& m) {
       .def_readonly("sag", &R::sag, "Largest displacement at each pose [m].")
       .def_readonly("overloaded", &R::overloaded, "Poses at which it bends or bears more than it may.")
       .def_readonly("violation", &R::violation, "P2's Cost(C); 0 if and only if solved.")
-      .def_readonly("violations", &R::violations, "Of each pose: 2 out of reach, 1 in collision, 0 neither.")
+      .def_readonly("violations", &R::violations, "For each pose: 2 out of reach, 1 in collision, 0 neither.")
       .def_readonly("rejections", &R::rejections, "Configurations rejected, by cause.")
       .def_readonly("refused_edges", &R::refused_edges, "Motions between poses that collide or leave the path.")
       .def_readonly("configurations", &R::configurations, "Arm configurations found over all poses.")
@@ -207,14 +207,14 @@ void bind_optimum(py::module_& m) {
       .def_readonly("evaluations", &R::evaluations, "Grasps tried.")
       .def_readonly("boxes", &R::boxes, "Boxes of grasps that branch_and_bound bounded.")
       .def_readonly("history", &R::history, "Best cost after each of them; infinite while none was feasible.")
-      .def_readonly("unreachable", &R::unreachable, "Of each pose: how many of the grasps tried do not reach it.")
-      .def_readonly("colliding", &R::colliding, "Of each pose: at how many all arm configurations collide.")
+      .def_readonly("unreachable", &R::unreachable, "For each pose how many of the grasps tried do not reach it.")
+      .def_readonly("colliding", &R::colliding, "For each pose at how many all arm configurations collide.")
       .def("sag_candidates", &sag_candidates,
            "Every feasible grasp with its mean sag [m] as its cost: candidates for plan_manipulation, whose "
            "`max_length`\n"
            "then takes the one that sags least among those whose motion is short enough.")
       .def_readonly("overloaded", &R::overloaded,
-                    "Of each pose: with how many the pipe bends or bears more than it may.")
+                    "For each pose with how many the pipe bends or bears more than it may.")
       .def("__repr__", [](const R& r) {
         return std::string("GraspOptimum(") + to_string(r.outcome) + ", " + std::to_string(r.evaluations) +
                " grasps tried, " + std::to_string(r.feasible.size()) + " feasible" +

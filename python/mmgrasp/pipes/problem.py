@@ -75,7 +75,7 @@ class PipeProblem:
     compare: list[Grasp] = field(default_factory=list)
     """Grasps that the file wants costed beside the best one."""
     path_options: dict[str, Any] = field(default_factory=dict)
-    """Of ObjectPathOptions, without weights, scales and limits."""
+    """Fields of ObjectPathOptions, without weights, scales and limits."""
     search_options: dict[str, Any] = field(default_factory=dict)
 
     @property

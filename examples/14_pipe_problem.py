@@ -23,17 +23,7 @@ with TemporaryDirectory() as folder:
 
 # The pipe may go any way now: of the grasps whose motion is at most 5 rad long, the one that sags least.
 candidates = plan.optimum.sag_candidates()[:100]
-task = mg.ManipulationProblem(
-    problem.arm,
-    problem.world,
-    problem.pipe.shapes(),
-    problem.T_world_pipe[0],
-    problem.T_world_pipe[-1],
-    candidates,
-    gripper=problem.gripper,
-    touch_links=sorted(problem.gripper.finger_links),
-    object_name="pipe",
-)
+task = problem.manipulation_problem(candidates)
 found = mg.plan_manipulation(task, max_length=5.0)
 if found.path is not None:
     sag = candidates[found.grasp_index].cost

@@ -21,12 +21,13 @@ from pathlib import Path
 import numpy as np
 
 HERE = Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE), str(HERE.parent)]
+sys.path[:0] = [str(HERE), str(HERE.parent), str(HERE.parents[1] / "tests" / "python")]
 from frames import Frames
 from programs import baselines_environment
 from tables import ROOT
 
 import mmgrasp as mg
+from camera_poses import look_at
 
 TABLE_SCENE = [
     mg.LinkShape(mg.Box([1.0, 1.0, 0.02]), mg.pose([0, 0, -0.01])),
@@ -34,15 +35,6 @@ TABLE_SCENE = [
     mg.LinkShape(mg.Sphere(0.06), mg.pose([-0.12, 0.08, 0.06])),
     mg.LinkShape(mg.Cylinder(0.04, 0.14), mg.pose([0.0, -0.12, 0.07])),
 ]
-
-
-def look_at(eye: np.ndarray, target: np.ndarray) -> np.ndarray:
-    z = (target - eye) / np.linalg.norm(target - eye)
-    x = np.cross(z, [0.0, 0.0, 1.0])
-    x /= np.linalg.norm(x)
-    pose = np.eye(4)
-    pose[:3] = np.column_stack([x, np.cross(z, x), z, eye])
-    return pose
 
 
 def rendered(count: int) -> Frames:

@@ -110,7 +110,7 @@ def world_of(shapes: list[mg.LinkShape]) -> mg.World:
 
 
 def microseconds(checker: mg.CollisionChecker, Q: np.ndarray) -> float:
-    """Of one check, by one thread, the least of five rounds."""
+    """Time of one check by one thread, the least of five rounds."""
     rounds = []
     for _ in range(5):
         begin = time.perf_counter()

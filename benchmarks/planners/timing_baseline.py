@@ -16,7 +16,7 @@ from toppra import constraint
 
 
 def toppra_duration(points: np.ndarray, velocity: np.ndarray, acceleration: np.ndarray) -> float:
-    """Of a cubic spline through dense points, by arc length; bounds on velocity and (interpolated) acceleration."""
+    """TOPP-RA's duration of a cubic spline through dense points, by arc length; bounds on velocity and (interpolated) acceleration."""
     toppra.setup_logging("ERROR")
     s = np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
     path = toppra.SplineInterpolator(s, points)

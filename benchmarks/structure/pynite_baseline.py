@@ -17,7 +17,7 @@ from Pynite import FEModel3D
 
 
 def turn_of(model: FEModel3D, name: str, y: list[float]) -> float:
-    """By how much the member's axes must be turned about it so that its y is this direction [degrees]."""
+    """Angle by which the member's axes must be turned about it so that its y is this direction [degrees]."""
     axes = np.array(model.members[name].T())[:3, :3]  # rows: x, y, z
     return float(np.degrees(np.arctan2(axes[2] @ y, axes[1] @ y)))
 
@@ -43,7 +43,7 @@ def solved(frame: dict, turns: list[float]) -> FEModel3D:
 
 
 def turns_of(frame: dict) -> list[float]:
-    """Of all members; their y is then where it was asked for."""
+    """The turns of all members; their y is then where it was asked for."""
     plain = solved(frame, [0.0] * len(frame["members"]))
     turns = [turn_of(plain, f"m{i}", m["y"]) for i, m in enumerate(frame["members"])]
     turned = solved(frame, turns)

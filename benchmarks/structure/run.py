@@ -120,7 +120,7 @@ def for_pynite(plain: dict) -> dict:
 
 
 def largest_difference(plain: dict, theirs: dict) -> float:
-    """Of displacements, rotations, reaction force and moment, each over the largest of its kind."""
+    """Largest difference of displacements, rotations, reaction force and moment, each over the largest of its kind."""
     frame, support = frame_of(plain)
     state = SupportedFrame(frame, support).state(plain["gravity"])
     worst = 0.0

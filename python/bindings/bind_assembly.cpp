@@ -80,10 +80,10 @@ void bind_assembly_grasp(py::module_& m) {
           "T_active_tool", [](const G& g) { return g.T_active_tool.matrix(); }, "(4, 4)")
       .def_readonly("fingers", &G::fingers, "2: parallel jaws; 3: centric fingers.")
       .def_readonly("opening", &G::opening, "Between the pads, or the diameter that three of them touch [m].")
-      .def_readonly("width", &G::width, "Of a finger, across approach and closing direction [m].")
-      .def_readonly("thickness", &G::thickness, "Of a finger, along the closing direction [m].")
-      .def_readonly("clearance", &G::clearance, "By how much each finger opens to approach and to let go [m].")
-      .def_readonly("palm_radius", &G::palm_radius, "Of the palm and of all behind it [m].")
+      .def_readonly("width", &G::width, "Width of a finger, across approach and closing direction [m].")
+      .def_readonly("thickness", &G::thickness, "Thickness of a finger, along the closing direction [m].")
+      .def_readonly("clearance", &G::clearance, "How far each finger opens to approach and to let go [m].")
+      .def_readonly("palm_radius", &G::palm_radius, "Radius of the palm and of all behind it [m].")
       .def("__repr__", [](const G& g) {
         return "AssemblyGrasp(" + std::to_string(g.fingers) + " fingers, opening " +
                std::string(py::repr(py::float_(g.opening))) + ")";
@@ -124,7 +124,7 @@ void bind_candidates(py::module_& m) {
   py::class_<Facet>(m, "Facet", "A nearly plane piece of a surface (P1 5.3.3, planar clustering).")
       .def_readonly("faces", &Facet::faces, "Triangles of the mesh, ascending.")
       .def_readonly("normal", &Facet::normal, "Outwards, weighted by area, (3,).")
-      .def_readonly("centre", &Facet::centre, "Of area [m], (3,).")
+      .def_readonly("centre", &Facet::centre, "Centre of its area [m], (3,).")
       .def_readonly("area", &Facet::area, "[m2]")
       .def("__repr__", [](const Facet& f) { return "Facet(" + std::to_string(f.faces.size()) + " faces)"; });
   m.def("_assembly_grasp_option_table", [] { return option_table(assembly_grasp_fields()); });

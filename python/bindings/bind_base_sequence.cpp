@@ -103,7 +103,7 @@ void bind_stops(py::module_& m) {
       "Those of the robust sets that are part of no other one: enough to prove a least number of stops.");
   py::class_<Stop>(m, "Stop", "Where the base stops and which trays it serves there.")
       .def_readonly("pose", &Stop::pose, "x, y, theta.")
-      .def_readonly("radius", &Stop::radius, "Of the disc in which every target part stays graspable [m].")
+      .def_readonly("radius", &Stop::radius, "Radius of the disc in which every target part stays graspable [m].")
       .def_readonly("trays", &Stop::trays, "Indices of the trays picked here; each tray has one stop.")
       .def_readonly("intersection", &Stop::intersection, "Index into the robust intersections.")
       .def_readonly("arrivals", &Stop::arrivals, "Arrivals drawn by the problem's arrival_covariance; 0: none.")
@@ -115,7 +115,7 @@ void bind_stops(py::module_& m) {
   py::class_<StopSet>(m, "StopSet", "Stops that serve all trays.")
       .def_readonly("outcome", &StopSet::outcome,
                     "`solved`: proven least; `approximate`: a cover that may have too many stops.")
-      .def_readonly("stops", &StopSet::stops, "In no order yet.")
+      .def_readonly("stops", &StopSet::stops, "The stops, in no order yet.")
       .def_readonly("lower_bound", &StopSet::lower_bound, "Proven least number of stops.")
       .def_readonly("unreachable_trays", &StopSet::unreachable_trays,
                     "Indices of trays that no disc of the asked radius serves.")
@@ -208,7 +208,8 @@ void bind_routes(py::module_& m) {
 }
 
 void bind_policies(py::module_& m) {
-  py::class_<OptimisedOrder>(m, "OptimisedOrder", "In which order parts are best picked.")
+  py::class_<OptimisedOrder>(m, "OptimisedOrder",
+                             "A picking order, and how large the discs are in which the base may stop for its rounds.")
       .def_readonly("order", &OptimisedOrder::order, "[tray][round]: index of the part.")
       .def_readonly("mean_radius", &OptimisedOrder::mean_radius, "Over rounds and groups [m].")
       .def_readonly("smallest_radius", &OptimisedOrder::smallest_radius, "Least radius over rounds and groups [m].")
@@ -218,7 +219,7 @@ void bind_policies(py::module_& m) {
                (o.proven ? ", proven)" : ")");
       });
   py::class_<PolicyRound>(m, "PolicyRound", "One round of pick and place.")
-      .def_readonly("outcome", &PolicyRound::outcome, "Of the choice of stops.")
+      .def_readonly("outcome", &PolicyRound::outcome, "Outcome of the choice of stops.")
       .def_readonly("stops", &PolicyRound::stops,
                     "The stops of the round; their trays are indices into the picking order.")
       .def_readonly("mean_radius", &PolicyRound::mean_radius, "Over the stops [m].")
@@ -230,7 +231,7 @@ void bind_policies(py::module_& m) {
                " stops, mean radius " + std::string(py::repr(py::float_(r.mean_radius))) + ")";
       });
   py::class_<PolicyResult>(m, "PolicyResult", "A row of P1 table 3.4.")
-      .def_readonly("rounds", &PolicyResult::rounds, "In order.")
+      .def_readonly("rounds", &PolicyResult::rounds, "The rounds in order.")
       .def_readonly("mean_radius", &PolicyResult::mean_radius, "P1 equation 3.2 [m].")
       .def_readonly("smallest_radius", &PolicyResult::smallest_radius, "Over all stops of all rounds [m].")
       .def_readonly("mean_stops", &PolicyResult::mean_stops, "Stops a round.")

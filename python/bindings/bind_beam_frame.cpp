@@ -128,9 +128,9 @@ void bind_beam_parts(py::module_& m) {
       .def_readonly("node", &NodeLoad::node, "Index of the node.")
       .def_readonly("mass", &NodeLoad::mass, "[kg]")
       .def_property_readonly(
-          "force", [](const NodeLoad& l) { return l.force; }, "In the object's frame [N].")
+          "force", [](const NodeLoad& l) { return l.force; }, "Force in the object's frame [N].")
       .def_property_readonly(
-          "moment", [](const NodeLoad& l) { return l.moment; }, "In the object's frame [N m].");
+          "moment", [](const NodeLoad& l) { return l.moment; }, "Moment in the object's frame [N m].");
   py::class_<BeamSupport>(m, "BeamSupport", "Where a frame is held: a hand, a fixture.")
       .def(py::init(
                [](const Given<int>& member, const Given<double>& distance, const Given<std::array<bool, 6>>& fixed) {
@@ -190,7 +190,7 @@ void bind_supported_frame(py::module_& m) {
           [](const SupportedFrame& f, const ArrayLike& g) {
             return f.largest_displacement(vector3_argument(g, "gravity"));
           },
-          "gravity"_a, "Of state(), alone: quicker.")
+          "gravity"_a, "The displacement of state() alone: quicker.")
       .def(
           "displacement",
           [](const SupportedFrame& f, const ArrayLike& g, const Given<int>& member, const Given<double>& distance) {
@@ -225,7 +225,7 @@ void bind_beam_frame(py::module_& m) {
           "nodes", [](const BeamFrame& f) { return rows_to_array(f.nodes); }, "(n, 3) in the object's frame [m].")
       .def_readonly("members", &BeamFrame::members, "The beams.")
       .def_readonly("loads", &BeamFrame::loads, "What hangs on nodes.")
-      .def_property_readonly("mass", &BeamFrame::mass, "Of members and loads [kg].")
+      .def_property_readonly("mass", &BeamFrame::mass, "Mass of members and loads [kg].")
       .def_property_readonly("centre_of_mass", &BeamFrame::centre_of_mass, "[m]")
       .def(
           "split",

@@ -89,8 +89,9 @@ void bind_cartesian(py::module_& m) {
       .def_readonly("cause", &CartesianResult::cause, "Why it ended there.")
       .def_readonly("contact", &CartesianResult::contact, "What touches there, when something does, or None.")
       .def_readonly("branches", &CartesianResult::branches, "Allowed configurations of the first pose.")
-      .def_readonly("tried", &CartesianResult::tried, "Of these: followed.")
-      .def_readonly("rejections", &CartesianResult::rejections, "Of the first pose's configurations, by cause.")
+      .def_readonly("tried", &CartesianResult::tried, "How many of these were followed.")
+      .def_readonly("rejections", &CartesianResult::rejections,
+                    "Configurations of the first pose that were rejected, by cause.")
       .def_readonly("beyond_limits", &CartesianResult::beyond_limits,
                     "With invalid_start: which joint of `near` is outside of its limits, its value and these.")
       .def(

@@ -42,12 +42,14 @@ void bind_provenance(py::module_& m) {
   using C = ContactPairProvenance;
   using P = PipeProvenance;
   using H = HeightMapProvenance;
-  py::class_<C>(m, "ContactPairProvenance", "Of sample_grasps: two opposed contacts and a direction of approach.")
+  py::class_<C>(m, "ContactPairProvenance",
+                "Provenance of sample_grasps: two opposed contacts and a direction of approach.")
       .def_readonly("pair", &C::pair, "Index among the object's contact pairs, those that are too wide included.")
       .def_readonly("approach", &C::approach, "Index among the approach directions around the closing axis.")
       .def_readonly("flipped", &C::flipped, "The hand is turned by half a turn about the approach.")
       .def("__repr__", [](const C& p) { return "ContactPairProvenance(pair=" + std::to_string(p.pair) + ")"; });
-  py::class_<P>(m, "PipeProvenance", "Of Pipe.grasp and Pipe.sample_grasps: P2's four variables (P2 3.2.3.1).")
+  py::class_<P>(m, "PipeProvenance",
+                "Provenance of Pipe.grasp and Pipe.sample_grasps: P2's four variables (P2 3.2.3.1).")
       .def_readonly("section", &P::section, "Index of the pipe's section.")
       .def_readonly("length", &P::length, "From the section's first node to the tool frame [m].")
       .def_readonly("angle", &P::angle, "From the section's y axis to the approach about its x axis [rad].")
@@ -58,7 +60,8 @@ void bind_provenance(py::module_& m) {
                ", angle=" + std::string(py::repr(py::float_(p.angle))) + ", flipped=" + (p.flipped ? "True" : "False") +
                ")";
       });
-  py::class_<H>(m, "HeightMapProvenance", "Of evaluate_graspability: a place of a height map and of a depth image.")
+  py::class_<H>(m, "HeightMapProvenance",
+                "Provenance of evaluate_graspability: a place of a height map and of a depth image.")
       .def_readonly("angle", &H::angle, "Direction of the closing axis in the map's frame, in [0, pi) [rad].")
       .def_readonly("height", &H::height, "Height of the finger tips above the map's frame [m].")
       .def_property_readonly(

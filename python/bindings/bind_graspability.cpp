@@ -32,7 +32,7 @@ const std::vector<OptionField<GraspabilityOptions>>& graspability_fields() {
 const std::vector<OptionField<PlacementOptions>>& placement_fields() {
   using O = PlacementOptions;
   static const std::vector<OptionField<O>> fields{
-      option<O>("attempts", &O::attempts, "random places tried for each part"),
+      option<O>("draws", &O::draws, "random places tried for each part"),
       option<O>("stack", &O::stack, "a part without a place on the floor may lie on others"),
       option<O>("clearance", &O::clearance, "air left between bodies [m]"),
       option<O>("seed", &O::seed, "same seed, same places")};
@@ -121,7 +121,7 @@ void bind_placement(py::module_& m) {
       .def_readonly("on_floor", &PlacedPart::on_floor, "False: it lies on others.")
       .def("__repr__", [](const PlacedPart& p) { return "PlacedPart(at " + text(p.T_tray_part.translation()) + ")"; });
   py::class_<RandomPlacement>(m, "RandomPlacement", "Parts lying in a tray at random.")
-      .def_readonly("parts", &RandomPlacement::parts, "In the order in which they were placed.")
+      .def_readonly("parts", &RandomPlacement::parts, "The parts in the order in which they were placed.")
       .def_readonly("not_placed", &RandomPlacement::not_placed, "Parts for which no place was found.")
       .def("__repr__",
            [](const RandomPlacement& p) { return "RandomPlacement(" + std::to_string(p.parts.size()) + " parts)"; });

@@ -6,6 +6,7 @@
 #include "bindings.hpp"
 #include "given.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
+#include "mmgrasp/grasp/hand.hpp"
 #include "mmgrasp/gripper_design/minimal_grippers.hpp"
 
 namespace mmgrasp::python {
@@ -114,7 +115,7 @@ void bind_gripper(py::module_& m) {
            "finger_width"_a = G{}.finger_width, "finger_thickness"_a = G{}.finger_thickness,
            "palm_height"_a = G{}.palm_height, "max_force"_a = G{}.max_force, "max_speed"_a = G{}.max_speed,
            "Lengths in m, force of each finger in N, its speed in m/s.")
-      .def_readonly("name", &G::name, "Of its URDF.")
+      .def_readonly("name", &G::name, "Name of its URDF.")
       .def_readonly("actuator", &G::actuator, "Name of the drive, or ''.")
       .def_readonly("fingers", &G::fingers, "2 or 3.")
       .def_readonly("min_opening", &G::min_opening, "Between the pads, or the diameter that three of them touch [m].")
@@ -123,12 +124,18 @@ void bind_gripper(py::module_& m) {
       .def_readonly("finger_width", &G::finger_width, "Across approach and closing direction [m].")
       .def_readonly("finger_thickness", &G::finger_thickness, "Along the closing direction [m].")
       .def_readonly("palm_height", &G::palm_height, "From the mounting face to the palm [m].")
-      .def_readonly("max_force", &G::max_force, "Of each finger's joint [N].")
-      .def_readonly("max_speed", &G::max_speed, "Of each finger's joint [m/s].")
+      .def_readonly("max_force", &G::max_force, "Largest force of each finger's joint [N].")
+      .def_readonly("max_speed", &G::max_speed, "Largest speed of each finger's joint [m/s].")
       .def_property_readonly("pad_length", &G::pad_length, "Length of the pad along the approach [m].")
       .def(
           "holds", [](const G& g, const Given<SegmentRequirement>& r) { return g.holds(taken(r, "requirement")); },
           "requirement"_a, "Whether it holds a segment: (5.2) of P1 with <= in place of <, to 1e-9 m.")
+      .def(
+          "hand", &G::hand,
+          "The Hand that it is, for planners and samplers: tool frame \"tool\", names as to_urdf() writes them. Of two "
+          "fingers only (InvalidInput): a Hand has pads that stand opposite each other. Mounted under a prefix, read "
+          "it "
+          "by Hand.from_robot().")
       .def(
           "finger_mesh", [](const G& g) { return MeshShape{g.finger_mesh()}; },
           "One finger to print: closed, convex, on the palm at z = 0, its pad in the plane x = 0 [m].")
@@ -165,7 +172,7 @@ void bind_actuator(py::module_& m) {
       .def_property_readonly(
           "max_opening", [](const A& a) { return OptionalNumber(or_none(a.max_opening)); },
           "As wide as fingers can be mounted [m]; None: any.")
-      .def_readonly("cost", &A::cost, "Of a gripper with this drive.")
+      .def_readonly("cost", &A::cost, "Cost of a gripper with this drive.")
       .def("__repr__", [](const A& a) {
         return "GripperActuator(" + a.name + ", " + std::to_string(a.fingers) + " fingers, stroke " + shown(a.stroke) +
                ")";
@@ -188,13 +195,13 @@ void bind_result(py::module_& m) {
       .def_readonly("outcome", &R::outcome,
                     "`solved`: proven in cost and changes; `approximate`: the bounds say what is proven; `infeasible`: "
                     "see explanations; `stopped`.")
-      .def_readonly("grippers", &R::grippers, "In the order of first use.")
-      .def_readonly("parts", &R::parts, "In the order of assembly.")
+      .def_readonly("grippers", &R::grippers, "The grippers in the order of first use.")
+      .def_readonly("parts", &R::parts, "Names of the parts in the order of assembly.")
       .def_readonly("gripper_of_part", &R::gripper_of_part, "Index into grippers, one per part.")
       .def_readonly("requirement_of_part", &R::requirement_of_part, "Index into the requirements, one per part.")
-      .def_readonly("cost", &R::cost, "Of the grippers and of the changes.")
+      .def_readonly("cost", &R::cost, "Cost of the grippers and of the changes.")
       .def_readonly("lower_bound", &R::lower_bound, "Proven: no set of grippers costs less.")
-      .def_readonly("changes", &R::changes, "Of the gripper from part to part.")
+      .def_readonly("changes", &R::changes, "How often the gripper changes from part to part.")
       .def_readonly("changes_bound", &R::changes_bound, "Proven: no set of the same cost needs fewer.")
       .def_readonly("candidates", &R::candidates, "Grippers chosen among, none doing only what another does.")
       .def_readonly("uncovered", &R::uncovered, "Parts that no gripper takes.")

@@ -45,10 +45,10 @@ void bind_hand_body(py::module_& m) {
            py::kw_only(), py::arg("finger_thickness") = own.finger_thickness,
            py::arg("finger_length") = own.finger_length, py::arg("palm_length") = own.palm_length,
            py::arg("palm_width") = own.palm_width, "Sizes [m], > 0; see the properties of the same names.")
-      .def_readonly("finger_thickness", &HandBody::finger_thickness, "Of a finger along the closing axis.")
+      .def_readonly("finger_thickness", &HandBody::finger_thickness, "Size of a finger along the closing axis.")
       .def_readonly("finger_length", &HandBody::finger_length, "From the finger tips back to the palm.")
-      .def_readonly("palm_length", &HandBody::palm_length, "Of the palm along the closing axis.")
-      .def_readonly("palm_width", &HandBody::palm_width, "Of the palm across it.")
+      .def_readonly("palm_length", &HandBody::palm_length, "Size of the palm along the closing axis.")
+      .def_readonly("palm_width", &HandBody::palm_width, "Size of the palm across it.")
       .def("__repr__", [](const HandBody& b) {
         return "HandBody(fingers " + std::string(py::repr(py::float_(b.finger_length))) + " m long)";
       });

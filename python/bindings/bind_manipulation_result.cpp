@@ -69,8 +69,7 @@ void bind_tree(py::module_& m) {
       .def_readonly("from_goal", &SearchTree::from_goal, "It grew from the goals; otherwise from the starts.")
       .def_property_readonly(
           "vertices", [](const SearchTree& t) { return Eigen::MatrixXd(t.vertices.transpose()); }, "(n, joints)")
-      .def_readonly("parents", &SearchTree::parents,
-                    "Of each vertex: another one, or -1 for the grasp's arm configurations.")
+      .def_readonly("parents", &SearchTree::parents, "Parent of each vertex, or -1 for the grasp's arm configurations.")
       .def_readonly("costs", &SearchTree::costs, "Length of the way from the root, (n,).")
       .def(
           "to_dict",
@@ -159,7 +158,8 @@ void bind_manipulation_result(py::module_& m) {
   bind_stats(m);
   py::class_<ManipulationResult>(m, "ManipulationResult", "What plan_manipulation found.")
       .def_readonly("outcome", &ManipulationResult::outcome, "How it ended; `solved` alone comes with an answer.")
-      .def_readonly("grasp_index", &ManipulationResult::grasp_index, "Of the problem's grasps; -1 unless solved.")
+      .def_readonly("grasp_index", &ManipulationResult::grasp_index,
+                    "Index into the problem's grasps; -1 unless solved.")
       .def_property_readonly(
           "path", [](const ManipulationResult& r) { return path_array(r.path); },
           "Waypoints (k, n), joined by straight lines; None unless solved.")

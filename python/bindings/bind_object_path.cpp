@@ -175,10 +175,10 @@ void bind_object_path_result(py::module_& m) {
       .def_readonly("sag", &R::sag, "Largest displacement at each pose [m].")
       .def_readonly("overloaded", &R::overloaded, "Poses at which it bends or bears more than it may.")
       .def_readonly("violation", &R::violation, "P2's Cost(C); 0 if and only if solved.")
-      .def_readonly("violations", &R::violations, "Of each pose: 2 out of reach, 1 in collision, 0 neither.")
+      .def_readonly("violations", &R::violations, "For each pose: 2 out of reach, 1 in collision, 0 neither.")
       .def_readonly(
           "gaps", &R::gaps,
-          "When every pose is reached but there is no path: of each pose but the last how the next is missed.\n"
+          "When every pose is reached but there is no path: for each pose but the last how the next is missed.\n"
           "0 it is not, 1 every motion jumps to another posture, 2 those that do not collide or leave the path.")
       .def_readonly("rejections", &R::rejections, "Configurations rejected, by cause.")
       .def_readonly("refused_edges", &R::refused_edges, "Motions between poses that collide or leave the path.")
@@ -211,17 +211,17 @@ void bind_optimum(py::module_& m) {
       .def_readonly("evaluations", &R::evaluations, "Grasps tried.")
       .def_readonly("boxes", &R::boxes, "Boxes of grasps that branch_and_bound bounded.")
       .def_readonly("history", &R::history, "Best cost after each of them; infinite while none was feasible.")
-      .def_readonly("unreachable", &R::unreachable, "Of each pose: how many of the grasps tried do not reach it.")
-      .def_readonly("colliding", &R::colliding, "Of each pose: at how many all arm configurations collide.")
+      .def_readonly("unreachable", &R::unreachable, "For each pose how many of the grasps tried do not reach it.")
+      .def_readonly("colliding", &R::colliding, "For each pose at how many all arm configurations collide.")
       .def("sag_candidates", &sag_candidates,
            "Every feasible grasp with its mean sag [m] as its cost: candidates for plan_manipulation, whose "
            "`max_length`\n"
            "then takes the one that sags least among those whose motion is short enough.")
       .def_readonly("overloaded", &R::overloaded,
-                    "Of each pose: with how many the pipe bends or bears more than it may.")
+                    "For each pose with how many the pipe bends or bears more than it may.")
       .def_readonly(
           "jumping_after", &R::jumping_after,
-          "Of each pose but the last: with how many grasps that reach every pose all motions to the next one\n"
+          "For each pose but the last: with how many grasps that reach every pose all motions to the next one\n"
           "jump to another posture of the arm.")
       .def_readonly("colliding_after", &R::colliding_after,
                     "The same where each motion that does not jump collides or leaves the path.")

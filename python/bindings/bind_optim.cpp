@@ -150,7 +150,7 @@ void bind_optim(py::module_& m) {
   py::class_<TourResult>(m, "TourResult", "What shortest_visiting_tour found.")
       .def_readonly("outcome", &TourResult::outcome, "`solved` with a proof of the shortest, `approximate` without.")
       .def_readonly("order", &TourResult::order, "Visiting order of the stops.")
-      .def_readonly("length", &TourResult::length, "Of the tour from start over all stops to the goal.")
+      .def_readonly("length", &TourResult::length, "Length of the tour from start over all stops to the goal.")
       .def_readonly("lower_bound", &TourResult::lower_bound, "Proven: no way is shorter.")
       .def_readonly("proven", &TourResult::proven, "True when the length meets the bound; always up to 15 stops.")
       .def(
@@ -218,7 +218,7 @@ void bind_optim(py::module_& m) {
       .def_readonly("weights", &W::weights, "Averages over normalised columns, as P2 takes them; they sum to 1.")
       .def_readonly("eigenvector", &W::eigenvector, "The principal eigenvector, Saaty's own; it sums to 1.")
       .def_readonly("largest_eigenvalue", &W::largest_eigenvalue, "m for a consistent matrix, else more.")
-      .def_readonly("consistency_ratio", &W::consistency_ratio, "Of Saaty; 0: fully consistent.")
+      .def_readonly("consistency_ratio", &W::consistency_ratio, "Saaty's consistency ratio; 0: fully consistent.")
       .def("__repr__", [](const W& w) {
         return "PairwiseWeights(" + text(w.weights) + ", consistency ratio " +
                std::string(py::repr(py::float_(w.consistency_ratio))) + ")";

@@ -146,7 +146,7 @@ void bind_motion(py::module_& m) {
       .def_readonly("cost", &MotionResult::cost, "Length of the path in joint space.")
       .def_readonly("goal_index", &MotionResult::goal_index, "Which of the goals the path reaches; -1 unless solved.")
       .def_readonly("contacts", &MotionResult::contacts, "With invalid_start or invalid_goal: what touches.")
-      .def_readonly("rejections", &MotionResult::rejections, "Of the start, or of goals, rejected.")
+      .def_readonly("rejections", &MotionResult::rejections, "Why the start, or goals, were rejected.")
       .def_readonly("beyond_limits", &MotionResult::beyond_limits,
                     "With invalid_start or invalid_goal: which joint is outside of its limits, its value and these.")
       .def_readonly("via_reached", &MotionResult::via_reached,

@@ -40,7 +40,7 @@ void bind_platform_locations_result(py::module_& m) {
           "q_place", [](const PlatformLocations& p) { return configuration(p, p.q_place); },
           "Base and arm at the second pose; None unless solved.")
       .def_readonly("cost", &PlatformLocations::cost, "Travel [m] + turn_weight * turn [rad].")
-      .def_readonly("travel", &PlatformLocations::travel, "Of the base between the two [m].")
+      .def_readonly("travel", &PlatformLocations::travel, "Travel of the base between the two [m].")
       .def_readonly("turn", &PlatformLocations::turn, "[rad]")
       .def_property_readonly(
           "pick", [](const PlatformLocations& p) { return counts_dict(p.pick); },

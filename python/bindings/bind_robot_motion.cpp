@@ -85,20 +85,22 @@ void bind_robot_motion(py::module_& m) {
              return robot_motion(trajectory, base_pose_argument(base_pose));
            }),
            py::arg("trajectory"), py::arg("base_pose") = py::none(),
-           "Of a timed trajectory. Columns x, y, theta, where it begins with them, are the base's; otherwise the base "
+           "The motion of a timed trajectory. Columns x, y, theta, where it begins with them, are the base's; "
+           "otherwise the base "
            "stands at\n"
            "base_pose (x, y, theta), the origin by default.")
-      .def_static("of_drive", &drive, py::arg("path"), py::arg("robot"), py::arg("arm"), py::arg("configuration"),
-                  py::kw_only(), py::arg("period") = 0.1,
-                  "Of a drive of the robot's base within its limits, `path.duration(robot)` long, with the arm at a "
-                  "configuration (n,);\n"
-                  "points at most `period` [s] apart.")
       .def_static(
-          "of_drive_by", &drive_by_motion, py::arg("result"), py::kw_only(),
-          py::arg("openings") = std::vector<double>{}, py::arg("period") = 0.02,
-          "Of what plan_drive_by found: points at most `period` [s] apart, and the gripper closing at every task "
-          "that takes\n"
-          "an object, to these openings [m], in order; none given: not known.")
+          "of_drive", &drive, py::arg("path"), py::arg("robot"), py::arg("arm"), py::arg("configuration"),
+          py::kw_only(), py::arg("period") = 0.1,
+          "The motion of a drive of the robot's base within its limits, `path.duration(robot)` long, with the arm at a "
+          "configuration (n,);\n"
+          "points at most `period` [s] apart.")
+      .def_static("of_drive_by", &drive_by_motion, py::arg("result"), py::kw_only(),
+                  py::arg("openings") = std::vector<double>{}, py::arg("period") = 0.02,
+                  "The motion that plan_drive_by found: points at most `period` [s] apart, and the gripper closing at "
+                  "every task "
+                  "that takes\n"
+                  "an object, to these openings [m], in order; none given: not known.")
       .def("append", &M::append, py::arg("next"),
            "Goes on with `next`, whose clock begins where this ends. Raises InvalidInput unless base and joints begin "
            "where they are.")
@@ -108,7 +110,7 @@ void bind_robot_motion(py::module_& m) {
            "At the end, standing still: `open` or `close` to an opening [m], which takes `duration` [s]; object: what "
            "is taken or\n"
            "left.")
-      .def_readonly("joints", &M::joints, "Of the arm, one a column.")
+      .def_readonly("joints", &M::joints, "Joints of the arm, one a column.")
       .def_property_readonly(
           "times", [](const M& t) { return py::array_t<double>(py::ssize_t(t.times.size()), t.times.data()); },
           "(k,) [s], from 0")

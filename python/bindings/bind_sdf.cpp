@@ -295,7 +295,7 @@ void bind_sdf(py::module_& m) {
           "Reads what save() wrote. Raises IoError when it is no map, of another version, truncated or damaged.")
       .def_property_readonly("frames", &ProbabilisticSdf::frames, "Integrated so far.")
       .def_property_readonly("blocks", &ProbabilisticSdf::blocks, "Blocks of 8 x 8 x 8 voxels.")
-      .def_property_readonly("memory", &ProbabilisticSdf::memory, "Of the blocks and their index [bytes].")
+      .def_property_readonly("memory", &ProbabilisticSdf::memory, "Size of the blocks and their index [bytes].")
       .def_property_readonly(
           "voxel", [](const ProbabilisticSdf& s) { return s.options().voxel; }, "Distance of neighbouring voxels [m].")
       .def_property_readonly(

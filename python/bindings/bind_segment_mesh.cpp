@@ -107,8 +107,8 @@ void bind_fitted_primitives(py::module_& m) {
           "(3,) [m]: lengths of a box; diameter twice and length of a cylinder; diameters at foot and top and length "
           "of "
           "a cone; diameter of a sphere.")
-      .def_readonly("volume", &F::volume, "Of the primitive [m^3].")
-      .def_readonly("hull_volume", &F::hull_volume, "Of the segment's convex hull [m^3].")
+      .def_readonly("volume", &F::volume, "Volume of the primitive [m^3].")
+      .def_readonly("hull_volume", &F::hull_volume, "Volume of the segment's convex hull [m^3].")
       .def_readonly("deviation", &F::deviation,
                     "Mean distance of the segment's faces from the primitive's surface that they lie on [m].")
       .def_readonly("widths", &F::widths, "Most covered first; empty where there is no surface to hold.")

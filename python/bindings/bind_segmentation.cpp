@@ -58,7 +58,8 @@ void bind_segmentation_results(py::module_& m) {
       });
   py::class_<SegmentedObject>(m, "SegmentedObject", "An object that was found on a plane.")
       .def_property_readonly(
-          "indices", [](const SegmentedObject& o) { return index_array(o.indices); }, "Of its points (n,), ascending.")
+          "indices", [](const SegmentedObject& o) { return index_array(o.indices); },
+          "Indices of its points (n,), ascending.")
       .def_property_readonly(
           "lower", [](const SegmentedObject& o) { return Eigen::Vector3d(o.bounds.min()); },
           "Lower corner of its points' bounds (3,) [m].")

@@ -96,8 +96,8 @@ void bind_structure(py::module_& m) {
             }
             return lengths;
           },
-          "Of the sections [m].")
-      .def_property_readonly("centre_of_mass", &Pipe::centre_of_mass, "Of tubes with equal walls [m].")
+          "Lengths of the sections [m].")
+      .def_property_readonly("centre_of_mass", &Pipe::centre_of_mass, "Centre of mass of tubes with equal walls [m].")
       .def(
           "shapes",
           [](const Pipe& p, bool flat_ends) { return p.shapes(flat_ends ? PipeEnds::flat : PipeEnds::round); },

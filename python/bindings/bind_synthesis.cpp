@@ -104,7 +104,7 @@ void bind_success(py::module_& m) {
   using D = DrawnSuccess;
   py::class_<D>(m, "DrawnSuccess", "The whole probability (4.1) by drawing surfaces from the map.")
       .def_readonly("probability", &D::probability, "Mean success over the drawn surfaces.")
-      .def_readonly("standard_error", &D::standard_error, "Of that mean.")
+      .def_readonly("standard_error", &D::standard_error, "Standard error of that mean.")
       .def_readonly("holds", &D::holds, "Share of the surfaces on which the grasp has force closure.")
       .def("__repr__",
            [](const D& d) { return "DrawnSuccess(" + std::string(py::repr(py::float_(d.probability))) + ")"; });
@@ -144,9 +144,10 @@ void bind_line_grasp(py::module_& m) {
              made.check();
              return made;
            }),
-           "width"_a = L{}.width, "max_opening"_a = L{}.max_opening, "Of the object, and of the gripper [m].")
-      .def_readonly("width", &L::width, "Of the object [m].")
-      .def_readonly("max_opening", &L::max_opening, "Of the gripper [m].")
+           "width"_a = L{}.width, "max_opening"_a = L{}.max_opening,
+           "The object's width, and the gripper's largest opening [m].")
+      .def_readonly("width", &L::width, "The object's width [m].")
+      .def_readonly("max_opening", &L::max_opening, "The gripper's largest opening [m].")
       .def("success", &L::success, "opening"_a, "position"_a, "object"_a,
            "P(S | x, G) of (4.3) and (4.4) for an object at a known place [m].")
       .def("probability", &L::probability, "opening"_a, "position"_a, "mean"_a, "sigma"_a,
@@ -160,7 +161,7 @@ void bind_result(py::module_& m) {
   py::class_<G>(m, "GraspSynthesis", "Grasps of an unknown part, most probable first, and why others were left out.")
       .def_readonly("outcome", &G::outcome, "solved, not_found or stopped.")
       .def_readonly("grasps", &G::grasps, "Most probable first; T_object_hand is the pose in the world.")
-      .def_readonly("ratings", &G::ratings, "In the same order.")
+      .def_readonly("ratings", &G::ratings, "Ratings of the grasps, in the same order.")
       .def_property_readonly(
           "counts", [](const G& g) -> CountsDict { return counts_dict(g.counts); },
           "Surface points drawn and grasps evaluated, by what became of them.")

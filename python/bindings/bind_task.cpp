@@ -82,7 +82,7 @@ void bind_problem(py::module_& m) {
            "`target`\nstays where it is; `grasps_too_wide` says how many candidates were left out because the gripper "
            "does not open so far.")
       .def_readonly("name", &Part::name, "Unique over the problem.")
-      .def_readonly("shapes", &Part::shapes, "In the part's frame.")
+      .def_readonly("shapes", &Part::shapes, "Its body, in the part's frame.")
       .def_property_readonly(
           "T_world_part", [](const Part& p) { return to_array(p.T_world_part); }, "Pose of the part (4, 4).")
       .def_readonly("target", &Part::target, "To be picked; otherwise an obstacle that stays.")
@@ -173,7 +173,7 @@ void bind_problem(py::module_& m) {
       .def_readonly("goal", &PartSupplyProblem::goal, "Base pose at the end (3,): x, y, theta [m, m, rad].")
       .def_readonly("place_region", &PartSupplyProblem::place_region, "Where picked parts go.")
       .def_readonly("arrival_covariance", &PartSupplyProblem::arrival_covariance,
-                    "Of x, y [m^2] and theta [rad^2] about a stop (3, 3); zeros: not asked for.")
+                    "Covariance of x, y [m^2] and theta [rad^2] about a stop (3, 3); zeros: not asked for.")
       .def_property_readonly(
           "options",
           [](const PartSupplyProblem& p) -> NamedOptions {
@@ -207,7 +207,7 @@ void bind_picks(py::module_& m) {
       .def_readonly("motions", &Pick::motions, "transit, approach, lift, transfer, retreat.")
       .def_readonly("rejections", &Pick::rejections, "Grasps and their configurations rejected on the way, by cause.")
       .def_readonly("failed_at", &Pick::failed_at, "Without a solution: the stage at which most candidates fell.")
-      .def_property_readonly("duration", &Pick::duration, "Of all its motions [s].")
+      .def_property_readonly("duration", &Pick::duration, "Duration of all its motions [s].")
       .def("__repr__", [](const Pick& p) {
         return std::string("Pick(") + to_string(p.outcome) + ", tray " + std::to_string(p.part.tray) + ", part " +
                std::to_string(p.part.part) + ")";
@@ -355,12 +355,12 @@ void bind_plan_result(py::module_& m) {
           "What the stops were chosen from.")
       .def_property_readonly(
           "stops", [](const PartSupplyPlan& p) { return ListedRegions(p).counted(p.stops); },
-          "In the order in which they are visited.")
+          "The stops in the order in which they are visited.")
       .def_readonly("lower_bound", &PartSupplyPlan::lower_bound, "Proven least number of stops over the regions.")
       .def_readonly("proven_minimal", &PartSupplyPlan::proven_minimal, "No fewer stops can serve the regions.")
       .def_readonly("route", &PartSupplyPlan::route,
                     "Drives from start over the stops to the goal: one more than stops.")
-      .def_readonly("picks", &PartSupplyPlan::picks, "In the order in which they are done.")
+      .def_readonly("picks", &PartSupplyPlan::picks, "The picks in the order in which they are done.")
       .def_readonly("robustness_rate", &PartSupplyPlan::robustness_rate,
                     "Least share over the stops of base poses drawn in the disc from which every part can be grasped.")
       .def_readonly("obstructions", &PartSupplyPlan::obstructions,

@@ -248,11 +248,12 @@ void bind_drive_by_result(py::module_& m) {
           "candidate, base_speed and\ntool_speed [m/s].")
       .def_property_readonly(
           "violations", [](const DriveByResult& r) { return violations_dict(r.violations); },
-          "By kind of constraint: value (0 when kept), tolerance, unit, time [s], waypoint, what, kept; measured on a "
+          "Each kind of constraint: value (0 when kept), tolerance, unit, time [s], waypoint, what, kept; measured on "
+          "a "
           "roll-out ten times\nfiner than the waypoints.")
       .def_readonly("grasp_assignments", &DriveByResult::grasp_assignments, "Choices of candidates planned.")
       .def_readonly("solves", &DriveByResult::solves, "Guesses from which the optimiser began.")
-      .def_readonly("iterations", &DriveByResult::iterations, "Of the optimiser, over all solves.")
+      .def_readonly("iterations", &DriveByResult::iterations, "Iterations of the optimiser, over all solves.")
       .def_readonly("seconds", &DriveByResult::seconds, "Wall-clock time of the call [s].")
       .def_readonly("report", &DriveByResult::report, "What was tried, and what is broken where, by how much.")
       .def("to_csv", &drive_by_csv, py::arg("between") = 0,

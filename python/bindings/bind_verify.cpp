@@ -139,7 +139,7 @@ void bind_plan_to_check(py::module_& m) {
                           "    verdict = mg.verify_plan(\"out/storeroom/plan.json\")\n"
                           "    for fault in verdict.faults:\n"
                           "        print(fault.code, fault.where, fault.message)")
-      .def(py::init<RobotSource>(), py::arg("robot"), "Of this robot; everything else is set afterwards.")
+      .def(py::init<RobotSource>(), py::arg("robot"), "A plan for this robot; everything else is set afterwards.")
       .def_readwrite("robot", &PlanToCheck::robot, "What the robot really is: its URDFs as they were given.")
       .def_readwrite("planned_robot", &PlanToCheck::planned_robot,
                      "As the planners understood it; without URDFs: not compared.")
@@ -148,7 +148,7 @@ void bind_plan_to_check(py::module_& m) {
       .def_readwrite("acceleration_limits", &PlanToCheck::acceleration_limits, "One an arm joint [rad/s^2 or m/s^2].")
       .def_readwrite("tip_link", &PlanToCheck::tip_link, "Link of the tool centre point.")
       .def_readwrite("other_joints", &PlanToCheck::other_joints, "Values of joints outside the arm [rad or m].")
-      .def_readwrite("max_opening", &PlanToCheck::max_opening, "Of the gripper [m].")
+      .def_readwrite("max_opening", &PlanToCheck::max_opening, "Largest opening of the gripper [m].")
       .def_readwrite("clearance", &PlanToCheck::clearance, "Opening beyond the part's width before grasping [m].")
       .def_readwrite("approach", &PlanToCheck::approach,
                      "Unit vector (3,) in the tip's frame along which the hand comes.")
@@ -170,7 +170,7 @@ void bind_plan_to_check(py::module_& m) {
       .def_readwrite("positioning_uncertainty", &PlanToCheck::positioning_uncertainty,
                      "Radius of the disc in which the base may come to stand [m].")
       .def_readwrite("arrival_covariance", &PlanToCheck::arrival_covariance,
-                     "Of x, y [m^2] and theta [rad^2] about a stop (3, 3); zeros: arrivals are not judged.")
+                     "Covariance of x, y [m^2] and theta [rad^2] about a stop (3, 3); zeros: arrivals are not judged.")
       .def_property(
           "T_base_bin", [](const PlanToCheck& p) { return to_array(p.T_base_bin); },
           [](PlanToCheck& p, const ArrayLike& T) { p.T_base_bin = pose_argument(T, "T_base_bin"); },
@@ -190,11 +190,11 @@ void bind_plan_to_check(py::module_& m) {
       .def_readwrite("trays", &PlanToCheck::trays, "Names of the trays.")
       .def_readwrite("grid", &PlanToCheck::grid, "Grid of the regions.")
       .def_readwrite("regions", &PlanToCheck::regions, "One a tray.")
-      .def_readwrite("stops", &PlanToCheck::stops, "In the order in which they are visited.")
+      .def_readwrite("stops", &PlanToCheck::stops, "The stops in the order in which they are visited.")
       .def_readwrite("route", &PlanToCheck::route, "Legs of base poses (3,), one more than stops.")
-      .def_readwrite("picks", &PlanToCheck::picks, "In order.")
+      .def_readwrite("picks", &PlanToCheck::picks, "The picks in order.")
       .def_readwrite("drive_by", &PlanToCheck::drive_by, "What of route and picks is done in passing.")
-      .def_readwrite("closing_speed", &PlanToCheck::closing_speed, "Of the opening [m/s], for drive_by.")
+      .def_readwrite("closing_speed", &PlanToCheck::closing_speed, "How fast the opening shrinks [m/s], for drive_by.")
       .def_readwrite("lower_bound", &PlanToCheck::lower_bound, "Least number of stops, as the plan says.")
       .def_readwrite("leg_values", &PlanToCheck::leg_values, "One a leg; empty: not given.")
       .def_readwrite("intersections", &PlanToCheck::intersections, "Places that the plan says lie in several regions.")

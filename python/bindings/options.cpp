@@ -10,29 +10,31 @@ namespace {
 constexpr std::size_t kLongest = 200;  // Characters of a value in a message.
 
 // Keywords of earlier versions by what they are called now.
-const std::map<std::string, std::string> kRenamed = {{"attempt_time_limit", "solve_time_limit"},
-                                                     {"attempts", "seeds"},
-                                                     {"choices", "grasp_assignments"},
-                                                     {"edge_step", "joint_step"},
-                                                     {"free", "free_axes"},
-                                                     {"gap", "clearance"},
-                                                     {"held_only", "attached_only"},
-                                                     {"improved", "on_solution"},
-                                                     {"look_out", "constraint_distance"},
-                                                     {"max_joint_step", "jump_threshold"},
-                                                     {"max_samples", "max_iterations"},
-                                                     {"scene", "world"},
-                                                     {"stands", "goal_configurations"},
-                                                     {"tool_cone", "orientation_constraint"}};
+const std::multimap<std::string, std::string> kRenamed = {{"attempt_time_limit", "solve_time_limit"},
+                                                          {"attempts", "draws"},
+                                                          {"attempts", "seeds"},
+                                                          {"choices", "grasp_assignments"},
+                                                          {"edge_step", "joint_step"},
+                                                          {"free", "free_axes"},
+                                                          {"gap", "clearance"},
+                                                          {"held_only", "attached_only"},
+                                                          {"improved", "on_solution"},
+                                                          {"look_out", "constraint_distance"},
+                                                          {"max_joint_step", "jump_threshold"},
+                                                          {"max_samples", "max_iterations"},
+                                                          {"scene", "world"},
+                                                          {"stands", "goal_configurations"},
+                                                          {"tool_cone", "orientation_constraint"}};
 
 }  // namespace
 
 std::string nearest_name(const std::string& wrong, const std::vector<std::string>& known) {
-  const auto renamed = kRenamed.find(wrong);
   // These are arguments of their own and not among the options.
   const bool argument = wrong == "improved" || wrong == "tool_cone" || wrong == "scene";
-  if (renamed != kRenamed.end() && (argument || std::find(known.begin(), known.end(), renamed->second) != known.end()))
-    return "; it is called " + renamed->second + " now";
+  const auto [first, last] = kRenamed.equal_range(wrong);
+  for (auto renamed = first; renamed != last; ++renamed)
+    if (argument || std::find(known.begin(), known.end(), renamed->second) != known.end())
+      return "; it is called " + renamed->second + " now";
   const py::list matches = py::module_::import("difflib").attr("get_close_matches")(wrong, known, 1, 0.5);
   if (!matches.empty()) return "; did you mean " + py::cast<std::string>(matches[0]) + "?";
   std::string all = "; known are ";

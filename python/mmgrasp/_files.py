@@ -147,5 +147,5 @@ def printable(text: str) -> str:
 
 
 def sha256_of(path: str | Path) -> str:
-    """Of a regular file; raises IoError."""
+    """SHA-256 of a regular file; raises IoError."""
     return hashlib.sha256(read_bytes(Path(path), LARGEST_FILE)).hexdigest()

@@ -138,7 +138,7 @@ def stored_shape(stored: Mapping[str, Any]) -> LinkShape:
 
 
 def _ground_height(body: Body) -> float | None:
-    """Of what World.add_floor put into a world."""
+    """Height of the ground that World.add_floor put into a world; None for other bodies."""
     ground = body.shapes[0].shape
     return ground.offset if body.name == "floor" and isinstance(ground, Plane) else None
 

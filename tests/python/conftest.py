@@ -32,6 +32,18 @@ def data() -> Path:
 
 
 @pytest.fixture(scope="session")
+def fetch() -> mg.Robot:
+    folder = ASSETS / "robots" / "fetchlike"
+    return mg.Robot.load(folder / "fetchlike.urdf", folder / "fetchlike.srdf", base="diff_drive")
+
+
+@pytest.fixture(scope="session")
+def arm(fetch: mg.Robot) -> mg.robot.JointGroup:
+    """The fetchlike robot's arm and torso, eight joints, on a base that stands."""
+    return fetch.group("arm_with_torso", tip="gripper_tcp")
+
+
+@pytest.fixture(scope="session")
 def storeroom() -> dict[str, Any]:
     """The shipped scenario as plain values."""
     values: dict[str, Any] = yaml.safe_load((ASSETS / "scenarios" / "storeroom.yaml").read_text())

@@ -155,7 +155,7 @@ def _key(place: Place) -> str | int:
 
 
 Harmless = dict[str, tuple[str, str]]
-"""By pattern: kinds of changes ("any" for all but those of type), and why they do no harm."""
+"""For each pattern the kinds of changes ("any" for all but those of type), and why they do no harm."""
 
 
 class Result(NamedTuple):

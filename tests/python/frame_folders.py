@@ -11,6 +11,7 @@ import pytest
 from PIL import Image
 
 import mmgrasp as mg
+from camera_poses import look_at
 from mmgrasp.cli import main
 from mmgrasp.frames import FrameFolder, open_frames, write_npz_frame
 from mmgrasp.robot import quat_xyzw_from_rotation
@@ -34,17 +35,6 @@ class Shot:
     raw: np.ndarray
     T_world_camera: np.ndarray
     quat_xyzw: np.ndarray
-
-
-def look_at(eye: np.ndarray, target: np.ndarray) -> np.ndarray:
-    """T_world_camera with the image's up along the world's z."""
-    forward = (target - eye) / np.linalg.norm(target - eye)
-    right = np.cross(forward, [0.0, 0.0, 1.0])
-    right /= np.linalg.norm(right)
-    T = np.eye(4)
-    T[:3, :3] = np.stack([right, np.cross(forward, right), forward], axis=1)
-    T[:3, 3] = eye
-    return T
 
 
 def shots(count: int, scale: float, pinhole: mg.mapping.PinholeCamera = PINHOLE) -> list[Shot]:

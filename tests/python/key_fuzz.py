@@ -32,7 +32,7 @@ Place = tuple[str | int, ...]
 
 
 def places(value: Any, at: Place = ()) -> Iterator[Place]:
-    """Of every value in a document; of long lists the first three."""
+    """The place of every value in a document; of long lists the first three."""
     entries = value.items() if isinstance(value, dict) else enumerate(value[:3]) if isinstance(value, list) else ()
     for key, entry in entries:
         yield from places(entry, (*at, key))

@@ -34,7 +34,7 @@ FETCH = str(ASSETS / "robots" / "fetchlike" / "fetchlike.urdf")
 
 
 def options() -> list[tuple[str, argparse.Action]]:
-    """Of all commands, those that take a value; switches and what is meant as any text are left out."""
+    """Options of all commands, those that take a value; switches and what is meant as any text are left out."""
     commands = next(a for a in build_parser()._actions if isinstance(a, argparse._SubParsersAction))
     every = [(name, action) for name, parser in commands.choices.items() for action in parser._actions]
     return [(n, a) for n, a in every if a.nargs != 0 and (a.type is not None or a.choices)]

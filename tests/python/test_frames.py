@@ -232,7 +232,7 @@ def test_tum_images_far_from_any_pose_are_named(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["associations.txt", "none"])
 def test_tum_without_depth_txt(name: str, tmp_path: Path) -> None:
-    """By the pairs of rgb and depth, or by the images' own names."""
+    """Times come from the pairs of rgb and depth, or from the images' own names."""
     write_frames(tmp_path, "tum", 3)
     rows = [line.split() for line in (tmp_path / "depth.txt").read_text().splitlines()[1:]]
     (tmp_path / "depth.txt").unlink()

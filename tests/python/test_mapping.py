@@ -178,5 +178,8 @@ def test_parts_at_given_poses_are_grasped_where_they_lie() -> None:
 
 
 def test_the_old_name_of_an_option_is_refused_with_the_new_one() -> None:
+    body, tray = [mg.LinkShape(mg.Box([0.02, 0.02, 0.02]))], [0.3, 0.2, 0.1]
     with pytest.raises(mg.InvalidInput, match=r"gap.*it is called clearance now"):
-        mg.mapping.random_placement([mg.LinkShape(mg.Box([0.02, 0.02, 0.02]))], [0.3, 0.2, 0.1], gap=0.001)  # type: ignore[call-arg]
+        mg.mapping.random_placement(body, tray, gap=0.001)  # type: ignore[call-arg]
+    with pytest.raises(mg.InvalidInput, match=r"attempts.*it is called draws now"):
+        mg.mapping.random_placement(body, tray, attempts=10)  # type: ignore[call-arg]

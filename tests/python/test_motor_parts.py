@@ -17,7 +17,7 @@ EVERY = {**PARTS, "rotor": ROTOR, "sleeve": SLEEVE}
 
 
 def volume(vertices: np.ndarray, triangles: np.ndarray) -> float:
-    """By the divergence theorem: positive when closed and turned outside."""
+    """Volume by the divergence theorem: positive when closed and turned outside."""
     a, b, c = (vertices[triangles[:, k]] for k in range(3))
     return float(np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6)
 
@@ -53,7 +53,7 @@ def test_a_loft_between_rectangles_is_a_box() -> None:
 
 
 def test_openings_are_those_of_the_figure() -> None:
-    """Of each part, in any order; the radius of a neck is in none."""
+    """The openings of each part are there, in any order; the radius of a neck is in none."""
     for name, part in PARTS.items():
         made = {(2, min(s)) if isinstance(s, tuple) else (3, 2 * s) for s, _ in part.bodies} - {(3, 8.0)}
         assert made == {(fingers, width) for fingers, width, _ in SEGMENTS[name]}, name

@@ -17,7 +17,7 @@ from mmgrasp.viz.transfer import along, transfer_scene, write_transfer
 
 
 def distance_of_segments(a: Any, b: Any, c: Any, d: Any) -> float:
-    """Of two straight sections' centre lines, by sampling one and projecting on the other."""
+    """Distance of two straight sections' centre lines, by sampling one and projecting on the other."""
     points = a + np.linspace(0, 1, 201)[:, None] * (b - a)
     t = np.clip((points - c) @ (d - c) / ((d - c) @ (d - c)), 0, 1)
     return float(np.linalg.norm(points - c - t[:, None] * (d - c), axis=1).min())

@@ -425,16 +425,7 @@ def test_the_candidates_carry_their_sag_as_their_cost(plan: PipePlan) -> None:
 def test_the_pipe_sags_least_among_the_motions_that_are_short_enough(plan: PipePlan) -> None:
     problem = plan.problem
     candidates = plan.optimum.sag_candidates()[:60]
-    task = mg.ManipulationProblem(
-        problem.arm,
-        problem.world,
-        problem.pipe.shapes(),
-        problem.T_world_pipe[0],
-        problem.T_world_pipe[-1],
-        candidates,
-        gripper=problem.gripper,
-        touch_links=sorted(problem.gripper.finger_links),
-    )
+    task = problem.manipulation_problem(candidates)
     options: dict[str, Any] = {"planner": "prm_star_mg", "time_limit": 60.0, "vertices": 500, "refinements": 0}
     for grasp in candidates:
         assert grasp.cost > 0

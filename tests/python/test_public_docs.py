@@ -1,12 +1,16 @@
-"""Everything public of the C++ library has a docstring; comments in C++ have a subject."""
+"""Everything public of the C++ library has a docstring; comments and docstrings have a subject."""
 
 from __future__ import annotations
 
+import ast
 import enum
 import inspect
 import re
 from collections.abc import Iterator
+from pathlib import Path
 from types import ModuleType
+
+import pytest
 
 from conftest import REPOSITORY
 from mmgrasp import _core
@@ -57,15 +61,57 @@ def test_a_bare_signature_is_no_documentation() -> None:
     assert described("size(self: mmgrasp._core.Box) -> float\n\nFull lengths [m].")
 
 
+LOST = "(Of|By|In) "
+"""What begins so leaves it to the reader to find out what is spoken of."""
+
+
+def comments_without_a_subject(path: Path, mark: str) -> Iterator[str]:
+    """First lines of comments alone: `mark` is what a comment begins with."""
+    comment, fragment = re.compile(rf"\s*{mark}"), re.compile(rf"{mark}[/!]?<? *{LOST}")
+    before = ""
+    for line in path.read_text().splitlines():
+        if fragment.search(line) and not (comment.match(line) and comment.match(before)):
+            yield f"{path.relative_to(REPOSITORY)}: {line.strip()}"
+        before = line
+
+
+def strings_without_a_subject(path: Path) -> Iterator[str]:
+    """Docstrings, those of attributes too."""
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):
+            text = node.value.value
+            if isinstance(text, str) and re.match(rf"\s*{LOST}", text):
+                yield f"{path.relative_to(REPOSITORY)}:{node.lineno}: {text.strip().splitlines()[0]}"
+
+
 def test_comments_have_a_subject() -> None:
-    """One that begins with Of, By or In leaves it to the reader to find out what is spoken of."""
-    comment, fragment = re.compile(r"\s*//"), re.compile(r"//[/!]?<? *(Of|By|In) ")
-    lost: list[str] = []
-    for path in sorted((REPOSITORY / "cpp").rglob("*.[hci]*")):
-        before = ""
-        for line in path.read_text().splitlines():
-            continues = comment.match(line) and comment.match(before)
-            if fragment.search(line) and not continues:
-                lost.append(f"{path.relative_to(REPOSITORY)}: {line.strip()}")
-            before = line
-    assert lost == []
+    assert [
+        lost
+        for path in sorted((REPOSITORY / "cpp").rglob("*.[hci]*"))
+        for lost in comments_without_a_subject(path, "//")
+    ] == []
+
+
+def test_docstrings_have_a_subject() -> None:
+    """Those of bound classes, and all of the package, the tests, the examples and the benchmarks."""
+    said = {name: re.sub(r"\A.* -> .*\n+", "", doc or "") for name, doc in entries(_core)}  # without the signature
+    assert [name for name, doc in said.items() if re.match(LOST, doc)] == []
+    paths = [
+        path
+        for folder in ("python", "tests", "examples", "benchmarks")
+        for path in sorted((REPOSITORY / folder).rglob("*.py"))
+    ]
+    assert len(paths) > 300
+    lost = [lost for path in paths for lost in strings_without_a_subject(path)]
+    assert lost + [lost for path in paths for lost in comments_without_a_subject(path, "# ")] == []
+
+
+def test_what_begins_without_a_subject_is_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("test_public_docs.REPOSITORY", tmp_path)
+    path = tmp_path / "some.py"
+    path.write_text('"""Some."""\nx = 1\n"""Of x."""\n# In a line of its own.\n# By the way.\ny = 2  # Of y.\n')
+    assert list(strings_without_a_subject(path)) == ["some.py:3: Of x."]
+    assert list(comments_without_a_subject(path, "# ")) == [
+        "some.py: # In a line of its own.",
+        "some.py: y = 2  # Of y.",
+    ]

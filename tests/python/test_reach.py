@@ -12,19 +12,6 @@ import pytest
 
 import mmgrasp as mg
 
-ASSETS = Path(mg.__file__).parent / "assets"
-
-
-@pytest.fixture(scope="module")
-def fetch() -> mg.Robot:
-    folder = ASSETS / "robots" / "fetchlike"
-    return mg.Robot.load(folder / "fetchlike.urdf", folder / "fetchlike.srdf", base="diff_drive")
-
-
-@pytest.fixture(scope="module")
-def arm(fetch: mg.Robot) -> mg.robot.JointGroup:
-    return fetch.group("arm_with_torso", tip="gripper_tcp")
-
 
 @pytest.fixture(scope="module")
 def saved(arm: mg.robot.JointGroup, tmp_path_factory: pytest.TempPathFactory) -> Path:

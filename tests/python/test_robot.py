@@ -16,17 +16,6 @@ REFERENCE = DATA / "reference" / "transcribed" / "fk_pinocchio.json"
 CASES = json.loads(REFERENCE.read_text())["robots"] if REFERENCE.is_file() else {}
 
 
-@pytest.fixture(scope="module")
-def fetch() -> mg.Robot:
-    folder = ASSETS / "robots" / "fetchlike"
-    return mg.Robot.load(folder / "fetchlike.urdf", folder / "fetchlike.srdf", base="diff_drive")
-
-
-@pytest.fixture(scope="module")
-def arm(fetch: mg.Robot) -> mg.robot.JointGroup:
-    return fetch.group("arm_with_torso", tip="gripper_tcp")
-
-
 @pytest.mark.skipif(not CASES, reason="the shared reference numbers are not there")
 @pytest.mark.parametrize("name", sorted(CASES) or ["none"])
 def test_kinematics_equal_pinocchio(name: str) -> None:

@@ -10,18 +10,10 @@ import numpy as np
 import pytest
 
 import mmgrasp as mg
+from camera_poses import look_at
 from mmgrasp import mapping
 
 VOXEL = 0.004
-
-
-def look_at(eye: np.ndarray, target: np.ndarray) -> np.ndarray:
-    z = (target - eye) / np.linalg.norm(target - eye)
-    x = np.cross(z, [0.0, 0.0, 1.0])
-    x /= np.linalg.norm(x)
-    pose = np.eye(4)
-    pose[:3] = np.column_stack([x, np.cross(z, x), z, eye])
-    return pose
 
 
 @pytest.fixture(scope="module")

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import mmgrasp as mg
+from camera_poses import look_at
 from conftest import REPOSITORY
 
 LABELLED = REPOSITORY.parent / "shared" / "data" / "clouds" / "pcl" / "mOSD"
@@ -38,13 +39,7 @@ def camera() -> mg.mapping.PinholeCamera:
 
 def look_at_table(angle: float) -> np.ndarray:
     """From 0.5 m beside the boxes and 0.45 m above the table."""
-    eye = np.array([0.5 * np.cos(angle), 0.5 * np.sin(angle), 0.45])
-    z = (np.array([0, 0, 0.04]) - eye) / np.linalg.norm(np.array([0, 0, 0.04]) - eye)
-    x = np.cross(z, [0, 0, 1.0])
-    x /= np.linalg.norm(x)
-    pose = np.eye(4)
-    pose[:3] = np.column_stack([x, np.cross(z, x), z, eye])
-    return pose
+    return look_at(np.array([0.5 * np.cos(angle), 0.5 * np.sin(angle), 0.45]), np.array([0, 0, 0.04]))
 
 
 def frame(angle: float) -> mg.mapping.DepthImage:

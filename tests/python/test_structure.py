@@ -35,7 +35,7 @@ DH = {
 }
 BASE = {"tm14like": np.eye(4), "kr6like": np.diag([1.0, -1, -1, 1])}
 FLANGE = {"tm14like": "wrist_3_link", "kr6like": "link_6"}
-# Of the flange's frame in the last Denavit-Hartenberg frame: for the KR6 its x is the tool's direction.
+# Turn of the flange's frame in the last Denavit-Hartenberg frame: for the KR6 its x is the tool's direction.
 TURN = {"tm14like": np.eye(4), "kr6like": np.array([[0.0, 0, -1, 0], [0, 1, 0, 0], [1, 0, 0, 0], [0, 0, 0, 1]])}
 DEGREES = {
     "tm14like": [(-270, 270), (-180, 180), (-163, 163), (-180, 180), (-180, 180), (-270, 270)],

@@ -5,6 +5,7 @@
 #include "mmgrasp/control/base_tracking.hpp"
 #include "mmgrasp/control/unicycle.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/pose.hpp"
 #include "mmgrasp/robot/base_motion.hpp"
 
 namespace mmgrasp {
@@ -85,7 +86,7 @@ Eigen::Vector3d BaseTracker::command(const Eigen::Vector3d& desired, const Eigen
       if (options_.feed_forward)  // the plan's velocity is one in the world, wherever the platform looks
         velocity.head<2>() = Eigen::Rotation2Dd(desired.z() - measured.z()) * velocity.head<2>();
       Eigen::Vector3d error = desired - measured;
-      error.z() = wrapped_angle(error.z());
+      error.z() = wrap_angle(error.z());
       velocity += platform_velocity(measured.z(), correction(error));
     }
   }

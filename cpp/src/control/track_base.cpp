@@ -6,6 +6,7 @@
 #include "mmgrasp/control/base_tracking.hpp"
 #include "mmgrasp/control/unicycle.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/pose.hpp"
 #include "mmgrasp/core/random.hpp"
 #include "mmgrasp/robot/base_motion.hpp"
 
@@ -57,7 +58,7 @@ void record(BaseTrackingResult& result, double time, const Eigen::Vector3d& desi
   result.desired.push_back(desired);
   result.actual.push_back(actual);
   result.position_errors.push_back((desired - actual).head<2>().norm());
-  result.heading_errors.push_back(wrapped_angle(desired.z() - actual.z()));
+  result.heading_errors.push_back(wrap_angle(desired.z() - actual.z()));
 }
 
 }  // namespace

@@ -44,9 +44,4 @@ Eigen::Vector3d arc_velocity(const Eigen::Vector3d& from, const Eigen::Vector3d&
   return velocity;
 }
 
-double wrapped_angle(double angle) {
-  const double wrapped = detail::shortest_turn(angle);
-  return wrapped <= -detail::kTwoPi / 2 ? wrapped + detail::kTwoPi : wrapped;
-}
-
 }  // namespace mmgrasp

@@ -101,7 +101,7 @@ Pose checked_pose(const Eigen::Matrix4d& T, const std::string& field) {
 
 double wrap_angle(double angle) {
   if (angle > -detail::kPi && angle <= detail::kPi) return angle;
-  const double wrapped = std::remainder(angle, 2.0 * detail::kPi);
+  const double wrapped = detail::shortest_turn(angle);
   return wrapped <= -detail::kPi ? detail::kPi : wrapped;
 }
 

@@ -11,6 +11,8 @@ namespace {
 
 constexpr double kSameCost = 1e-7;  // As in solve_set_cover.
 
+/// Branch and bound over sets of grippers. In a set a gripper is kept for as long as one takes the next part, which
+/// needs fewest changes.
 class Search {
  public:
   Search(const std::vector<GripperCandidate>& candidates, int part_count, double least_gripper_cost,

@@ -10,7 +10,7 @@ namespace mmgrasp::detail {
 struct GripperChoice {
   std::vector<int> of_part;  ///< Candidate of each part, in the order of assembly.
   double gripper_cost = 0;   ///< Cost of the grippers used.
-  int changes = 0;           ///< From part to part.
+  int changes = 0;           ///< How often the gripper changes from part to part.
 };
 
 struct FewestChanges {

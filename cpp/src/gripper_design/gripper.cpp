@@ -12,6 +12,7 @@
 #include "mmgrasp/core/detail/file_content.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/grasp/hand.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -190,6 +191,23 @@ double Gripper::pad_length() const {
 
 double Gripper::palm_radius() const {
   return std::hypot(max_opening / 2 + finger_thickness, finger_width / 2);
+}
+
+Hand Gripper::hand() const {
+  check();
+  require(fingers == 2, "fingers", fingers, "must be 2: a hand has pads that stand opposite each other");
+  Hand hand;
+  hand.tool_link = "tool";
+  hand.approach = Eigen::Vector3d::UnitZ();
+  hand.closing = Eigen::Vector3d::UnitX();
+  hand.min_opening = min_opening;
+  hand.max_opening = max_opening;
+  hand.finger_depth = pad_length();
+  hand.finger_width = finger_width;
+  hand.joints = {{finger_name(0) + "_joint", 0.0, (max_opening - min_opening) / 2}};  // the other finger mimics it
+  hand.finger_links = {finger_name(0), finger_name(1)};
+  hand.body = {finger_thickness, finger_length, 2 * palm_radius(), 2 * palm_radius()};
+  return hand;
 }
 
 std::shared_ptr<const TriangleMesh> Gripper::finger_mesh() const {

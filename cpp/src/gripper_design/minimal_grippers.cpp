@@ -71,6 +71,7 @@ std::string refusal(const SegmentRequirement& requirement, const std::vector<Gri
              : "opening_margin = " + millimetres(options.opening_margin) + " leaves too little of the stroke";
 }
 
+/// An assembly with the candidate grippers for it: the cover of parts is chosen among these, checked, and explained.
 class Problem {
  public:
   Problem(const std::vector<SegmentRequirement>& requirements, const std::vector<GripperActuator>& actuators,

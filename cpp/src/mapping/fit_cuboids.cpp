@@ -27,6 +27,7 @@ void check_tray(const KnownTray& tray) {
   require(2 * tray.wall < tray.size.head<2>().minCoeff(), "tray.wall", tray.wall, "must leave room between the walls");
 }
 
+/// Takes plane and tray out of a cloud, divides the rest into clusters and fits an upright cuboid to each.
 class CuboidFitter {
  public:
   CuboidFitter(const std::vector<Vector3d>& points, const CuboidFitOptions& options, const Vector3d& eye)

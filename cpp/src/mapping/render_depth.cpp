@@ -59,6 +59,7 @@ struct Body {
   }
 };
 
+/// Casts a ray through every pixel near each body's outline, band of rows by band of rows.
 class Renderer {
  public:
   Renderer(const std::vector<PlacedShape>& scene, const PinholeCamera& camera, const Pose& T_world_camera)

@@ -52,8 +52,8 @@ void add_point(const ToolChain& chain, const VectorXd& q, const Eigen::Vector3d&
   }
 }
 
-void add_gap(const SeparatingPlane& plane, const VectorXd& q, double factor, double* value, VectorXd* gradient,
-             MatrixXd* H) {
+void add_separation(const SeparatingPlane& plane, const VectorXd& q, double factor, double* value, VectorXd* gradient,
+                    MatrixXd* H) {
   add_point(*plane.a, q, factor * plane.normal, value, gradient, H);
   if (plane.b) {
     add_point(*plane.b, q, -factor * plane.normal, value, gradient, H);
@@ -62,9 +62,9 @@ void add_gap(const SeparatingPlane& plane, const VectorXd& q, double factor, dou
   }
 }
 
-double gap(const SeparatingPlane& plane, const VectorXd& q) {
+double separation(const SeparatingPlane& plane, const VectorXd& q) {
   double value = 0;
-  add_gap(plane, q, 1, &value, nullptr, nullptr);
+  add_separation(plane, q, 1, &value, nullptr, nullptr);
   return value;
 }
 
@@ -109,7 +109,7 @@ void CollisionTerm::value(const double* x, double* out) const {
   const VectorXd q = point_.q(x);
   for (const SeparatingPlane& plane : planes_) {
     *out = 0;
-    add_gap(plane, q, 1, out++, nullptr, nullptr);
+    add_separation(plane, q, 1, out++, nullptr, nullptr);
   }
 }
 
@@ -118,7 +118,7 @@ void CollisionTerm::jacobian(const double* x, double* out) const {
   const MatrixXd D = point_.jacobian(x);
   for (std::size_t r = 0; r < planes_.size(); ++r) {
     VectorXd gradient = VectorXd::Zero(point_.columns());
-    add_gap(planes_[r], q, 1, nullptr, &gradient, nullptr);
+    add_separation(planes_[r], q, 1, nullptr, &gradient, nullptr);
     Eigen::Map<VectorXd>(out + static_cast<Eigen::Index>(r) * D.cols(), D.cols()) = D.transpose() * gradient;
   }
 }
@@ -128,7 +128,7 @@ void CollisionTerm::hessian(const double* x, const double* multipliers, double* 
   VectorXd gradient = VectorXd::Zero(point_.columns());
   MatrixXd curvature = MatrixXd::Zero(point_.columns(), point_.columns());
   for (std::size_t r = 0; r < planes_.size(); ++r)
-    add_gap(planes_[r], q, multipliers[r], nullptr, &gradient, &curvature);
+    add_separation(planes_[r], q, multipliers[r], nullptr, &gradient, &curvature);
   const MatrixXd D = point_.jacobian(x);
   MatrixXd H = D.transpose() * curvature * D;
   point_.add_curvature(x, gradient, H);
@@ -281,11 +281,11 @@ void CollisionRows::take_planes_at(const Sample& sample, const VectorXd& q, cons
     // Points fixed to the bodies represent whole bodies: the distance they missed is added to what is to be kept, as
     // far as there is room.
     for (SeparatingPlane& plane : planes)
-      plane.margin = std::max(plane.margin, std::min(plane.margin - clear, 0.8 * gap(plane, apart->q())));
+      plane.margin = std::max(plane.margin, std::min(plane.margin - clear, 0.8 * separation(plane, apart->q())));
     // Whichever of the points in question is further beyond.
     SeparatingPlane touching = here.plane(d, room);
     touching.normal = parted.normal;
-    planes.push_back(gap(parted, q) < gap(touching, q) ? parted : touching);
+    planes.push_back(separation(parted, q) < separation(touching, q) ? parted : touching);
   }
 }
 

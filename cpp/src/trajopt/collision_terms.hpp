@@ -23,7 +23,7 @@ namespace mmgrasp::detail {
 struct SeparatingPlane {
   std::shared_ptr<const ToolChain> a, b;  ///< Chains to the nearest points; `b` null: its point is fixed at p_b.
   Eigen::Vector3d p_b = Eigen::Vector3d::Zero();
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< From b to a.
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< Unit, from b to a.
   double margin = 0;
 };
 

@@ -12,9 +12,9 @@ namespace mmgrasp::detail {
 /// unit quaternions that are smooth functions of the configuration.
 class MMGRASP_EXPORT ToolChain {
  public:
-  /// To the group's tip. Throws InvalidInput for planar, floating and mimicking joints on the way.
+  /// The way to the group's tip. Throws InvalidInput for planar, floating and mimicking joints on the way.
   explicit ToolChain(const JointGroup& group);
-  /// To a frame on any link.
+  /// The way to a frame on any link.
   ToolChain(const JointGroup& group, int link, const Pose& T_link_point);
 
   struct Step {
@@ -23,7 +23,7 @@ class MMGRASP_EXPORT ToolChain {
     bool turns = true;
     int column = 0;
   };
-  /// From the base outwards; columns of the group that do not move the tip do not appear.
+  /// Joints from the base outwards; columns of the group that do not move the tip do not appear.
   const std::vector<Step>& steps() const { return steps_; }
 
   /// First derivatives of the tip, one entry per step: v of its origin, w its turning axis (0 where a joint slides).

@@ -26,7 +26,7 @@ class Ledger {
     v.tolerance = tolerance;
     list_.push_back(v);
   }
-  /// To the kind that was opened last.
+  /// Notes a value of the kind that was opened last.
   void note(double value, double time, const std::string& what) {
     Violation& v = list_.back();
     if (!(value > v.value) && !std::isnan(value)) return;
@@ -220,7 +220,7 @@ void check_tool(Ledger& ledger, const WholeBodyProblem& problem, const WholeBody
   });
 }
 
-/// Between waypoints that hold the tool to the same pose, it strays by less than what a gripper's grasp allows.
+/// The tool strays from a pose that two waypoints hold by less than what a gripper's grasp allows.
 void check_held_tool(Ledger& ledger, const WholeBodyProblem& problem, const std::vector<Sample>& samples) {
   constexpr double kShift = 2e-3, kTurn = 0.02;  // [m], [rad]
   struct Worst {

@@ -39,7 +39,7 @@ class MMGRASP_EXPORT WholeBodyNlp : public NonlinearProblem {
   WholeBodyNlp(const WholeBodyProblem& problem, double smoothing);
 
   const WholeBodyLayout& layout() const { return layout_; }
-  void add(std::unique_ptr<Term> term);  ///< Before the first solve, or between two.
+  void add(std::unique_ptr<Term> term);  ///< Not while a solver runs.
   const std::vector<std::unique_ptr<Term>>& terms() const { return terms_; }
 
   Eigen::VectorXd pack(const WholeBodyGuess& guess) const;

@@ -33,6 +33,7 @@ std::string shown(const std::string& name) {
   return "'" + name + "'";
 }
 
+/// Goes through links and joints of two robots by name and notes what differs.
 class Comparison {
  public:
   Comparison(const RobotModel& read, const RobotModel& planned, Faults& faults)

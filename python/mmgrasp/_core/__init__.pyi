@@ -934,7 +934,7 @@ class TourResult:
     @property
     def length(self) -> float:
         """
-        Of the tour from start over all stops to the goal.
+        Length of the tour from start over all stops to the goal.
         """
     @property
     def lower_bound(self) -> float:
@@ -1000,7 +1000,7 @@ class PairwiseWeights:
     @property
     def consistency_ratio(self) -> float:
         """
-        Of Saaty; 0: fully consistent.
+        Saaty's consistency ratio; 0: fully consistent.
         """
     @property
     def eigenvector(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -1750,7 +1750,7 @@ class CapabilityMap:
         """
 class ContactPairProvenance:
     """
-    Of sample_grasps: two opposed contacts and a direction of approach.
+    Provenance of sample_grasps: two opposed contacts and a direction of approach.
     """
     def __repr__(self) -> str:
         ...
@@ -1771,7 +1771,7 @@ class ContactPairProvenance:
         """
 class PipeProvenance:
     """
-    Of Pipe.grasp and Pipe.sample_grasps: P2's four variables (P2 3.2.3.1).
+    Provenance of Pipe.grasp and Pipe.sample_grasps: P2's four variables (P2 3.2.3.1).
     """
     def __repr__(self) -> str:
         ...
@@ -1797,7 +1797,7 @@ class PipeProvenance:
         """
 class HeightMapProvenance:
     """
-    Of evaluate_graspability: a place of a height map and of a depth image.
+    Provenance of evaluate_graspability: a place of a height map and of a depth image.
     """
     def __repr__(self) -> str:
         ...
@@ -1922,17 +1922,17 @@ class HandBody:
     @property
     def finger_thickness(self) -> float:
         """
-        Of a finger along the closing axis.
+        Size of a finger along the closing axis.
         """
     @property
     def palm_length(self) -> float:
         """
-        Of the palm along the closing axis.
+        Size of the palm along the closing axis.
         """
     @property
     def palm_width(self) -> float:
         """
-        Of the palm across it.
+        Size of the palm across it.
         """
 class Hand:
     """
@@ -2146,7 +2146,7 @@ class MotionResult:
     @property
     def rejections(self) -> Rejections:
         """
-        Of the start, or of goals, rejected.
+        Why the start, or goals, were rejected.
         """
     @property
     def stats(self) -> MotionStats:
@@ -2251,12 +2251,12 @@ class CartesianResult:
     @property
     def rejections(self) -> Rejections:
         """
-        Of the first pose's configurations, by cause.
+        Configurations of the first pose that were rejected, by cause.
         """
     @property
     def tried(self) -> int:
         """
-        Of these: followed.
+        How many of these were followed.
         """
 class Roadmap:
     """
@@ -2396,7 +2396,7 @@ class SearchTree:
     @property
     def parents(self) -> list[int]:
         """
-        Of each vertex: another one, or -1 for the grasp's arm configurations.
+        Parent of each vertex, or -1 for the grasp's arm configurations.
         """
     @property
     def vertices(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -2576,7 +2576,7 @@ class ManipulationResult:
     @property
     def grasp_index(self) -> int:
         """
-        Of the problem's grasps; -1 unless solved.
+        Index into the problem's grasps; -1 unless solved.
         """
     @property
     def grasps(self) -> list[GraspReport]:
@@ -2861,7 +2861,7 @@ class Part:
     @property
     def shapes(self) -> list[LinkShape]:
         """
-        In the part's frame.
+        Its body, in the part's frame.
         """
     @property
     def target(self) -> bool:
@@ -2965,7 +2965,7 @@ class PartSupplyProblem:
     @property
     def arrival_covariance(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Of x, y [m^2] and theta [rad^2] about a stop (3, 3); zeros: not asked for.
+        Covariance of x, y [m^2] and theta [rad^2] about a stop (3, 3); zeros: not asked for.
         """
     @property
     def goal(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -3277,7 +3277,7 @@ class Stop:
     @property
     def radius(self) -> float:
         """
-        Of the disc in which every target part stays graspable [m].
+        Radius of the disc in which every target part stays graspable [m].
         """
     @property
     def trays(self) -> list[int]:
@@ -3308,7 +3308,7 @@ class StopSet:
     @property
     def stops(self) -> list[Stop]:
         """
-        In no order yet.
+        The stops, in no order yet.
         """
     @property
     def unreachable_trays(self) -> list[int]:
@@ -3347,7 +3347,7 @@ class BasePath:
         """
 class OptimisedOrder:
     """
-    In which order parts are best picked.
+    A picking order, and how large the discs are in which the base may stop for its rounds.
     """
     def __repr__(self) -> str:
         ...
@@ -3385,7 +3385,7 @@ class PolicyRound:
     @property
     def outcome(self) -> Outcome:
         """
-        Of the choice of stops.
+        Outcome of the choice of stops.
         """
     @property
     def reliable(self) -> bool:
@@ -3440,7 +3440,7 @@ class PolicyResult:
     @property
     def rounds(self) -> list[PolicyRound]:
         """
-        In order.
+        The rounds in order.
         """
     @property
     def smallest_radius(self) -> float:
@@ -3487,7 +3487,7 @@ class Pick:
     @property
     def duration(self) -> float:
         """
-        Of all its motions [s].
+        Duration of all its motions [s].
         """
     @property
     def failed_at(self) -> str:
@@ -3623,7 +3623,7 @@ class PartSupplyPlan:
     @property
     def picks(self) -> list[Pick]:
         """
-        In the order in which they are done.
+        The picks in the order in which they are done.
         """
     @property
     def proven_minimal(self) -> bool:
@@ -3653,7 +3653,7 @@ class PartSupplyPlan:
     @property
     def stops(self) -> list[Stop]:
         """
-        In the order in which they are visited.
+        The stops in the order in which they are visited.
         """
     @property
     def timings(self) -> list[tuple[str, float]]:
@@ -3799,7 +3799,7 @@ class DriveByResult:
     @property
     def iterations(self) -> int:
         """
-        Of the optimiser, over all solves.
+        Iterations of the optimiser, over all solves.
         """
     @property
     def outcome(self) -> Outcome:
@@ -3829,7 +3829,7 @@ class DriveByResult:
     @property
     def violations(self) -> dict[str, mmgrasp.records.ViolationRow]:
         """
-        By kind of constraint: value (0 when kept), tolerance, unit, time [s], waypoint, what, kept; measured on a roll-out ten times
+        Each kind of constraint: value (0 when kept), tolerance, unit, time [s], waypoint, what, kept; measured on a roll-out ten times
         finer than the waypoints.
         """
 class RobotMotion:
@@ -3840,18 +3840,18 @@ class RobotMotion:
     @staticmethod
     def of_drive(path: BasePath, robot: Robot, arm: JointGroup, configuration: numpy.typing.ArrayLike, *, period: float = 0.1) -> RobotMotion:
         """
-        Of a drive of the robot's base within its limits, `path.duration(robot)` long, with the arm at a configuration (n,);
+        The motion of a drive of the robot's base within its limits, `path.duration(robot)` long, with the arm at a configuration (n,);
         points at most `period` [s] apart.
         """
     @staticmethod
     def of_drive_by(result: DriveByResult, *, openings: collections.abc.Sequence[float] = [], period: float = 0.02) -> RobotMotion:
         """
-        Of what plan_drive_by found: points at most `period` [s] apart, and the gripper closing at every task that takes
+        The motion that plan_drive_by found: points at most `period` [s] apart, and the gripper closing at every task that takes
         an object, to these openings [m], in order; none given: not known.
         """
     def __init__(self, trajectory: JointTrajectory, base_pose: numpy.typing.ArrayLike | None = None) -> None:
         """
-        Of a timed trajectory. Columns x, y, theta, where it begins with them, are the base's; otherwise the base stands at
+        The motion of a timed trajectory. Columns x, y, theta, where it begins with them, are the base's; otherwise the base stands at
         base_pose (x, y, theta), the origin by default.
         """
     def __len__(self) -> int:
@@ -3909,7 +3909,7 @@ class RobotMotion:
     @property
     def joints(self) -> list[str]:
         """
-        Of the arm, one a column.
+        Joints of the arm, one a column.
         """
     @property
     def positions(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -4023,7 +4023,7 @@ class PlatformLocations:
     @property
     def travel(self) -> float:
         """
-        Of the base between the two [m].
+        Travel of the base between the two [m].
         """
     @property
     def turn(self) -> float:
@@ -4481,7 +4481,7 @@ class ProbabilisticSdf:
     @property
     def memory(self) -> int:
         """
-        Of the blocks and their index [bytes].
+        Size of the blocks and their index [bytes].
         """
     @property
     def truncation(self) -> float:
@@ -4620,7 +4620,7 @@ class SegmentedObject:
     @property
     def indices(self) -> numpy.typing.NDArray[numpy.int32]:
         """
-        Of its points (n,), ascending.
+        Indices of its points (n,), ascending.
         """
     @property
     def lower(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -4765,7 +4765,7 @@ class FittedPrimitive:
     @property
     def hull_volume(self) -> float:
         """
-        Of the segment's convex hull [m^3].
+        Volume of the segment's convex hull [m^3].
         """
     @property
     def kind(self) -> str:
@@ -4780,7 +4780,7 @@ class FittedPrimitive:
     @property
     def volume(self) -> float:
         """
-        Of the primitive [m^3].
+        Volume of the primitive [m^3].
         """
     @property
     def widths(self) -> list[GraspWidth]:
@@ -4895,7 +4895,7 @@ class RandomPlacement:
     @property
     def parts(self) -> list[PlacedPart]:
         """
-        In the order in which they were placed.
+        The parts in the order in which they were placed.
         """
 class GraspSuccess:
     """
@@ -5007,7 +5007,7 @@ class DrawnSuccess:
     @property
     def standard_error(self) -> float:
         """
-        Of that mean.
+        Standard error of that mean.
         """
 class GraspRating:
     """
@@ -5051,7 +5051,7 @@ class LineGrasp:
     """
     def __init__(self, width: float = 0.2, max_opening: float = 0.4) -> None:
         """
-        Of the object, and of the gripper [m].
+        The object's width, and the gripper's largest opening [m].
         """
     def __repr__(self) -> str:
         ...
@@ -5066,12 +5066,12 @@ class LineGrasp:
     @property
     def max_opening(self) -> float:
         """
-        Of the gripper [m].
+        The gripper's largest opening [m].
         """
     @property
     def width(self) -> float:
         """
-        Of the object [m].
+        The object's width [m].
         """
 class GraspSynthesis:
     """
@@ -5116,7 +5116,7 @@ class GraspSynthesis:
     @property
     def ratings(self) -> list[GraspRating]:
         """
-        In the same order.
+        Ratings of the grasps, in the same order.
         """
 class Pipe:
     """
@@ -5165,7 +5165,7 @@ class Pipe:
     @property
     def centre_of_mass(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Of tubes with equal walls [m].
+        Centre of mass of tubes with equal walls [m].
         """
     @property
     def diameters(self) -> list[float]:
@@ -5175,7 +5175,7 @@ class Pipe:
     @property
     def lengths(self) -> list[float]:
         """
-        Of the sections [m].
+        Lengths of the sections [m].
         """
     @property
     def nodes(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -5278,7 +5278,7 @@ class NodeLoad:
     @property
     def force(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        In the object's frame [N].
+        Force in the object's frame [N].
         """
     @property
     def mass(self) -> float:
@@ -5288,7 +5288,7 @@ class NodeLoad:
     @property
     def moment(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        In the object's frame [N m].
+        Moment in the object's frame [N m].
         """
     @property
     def node(self) -> int:
@@ -5408,7 +5408,7 @@ class BeamFrame:
     @property
     def mass(self) -> float:
         """
-        Of members and loads [kg].
+        Mass of members and loads [kg].
         """
     @property
     def members(self) -> list[BeamMember]:
@@ -5434,7 +5434,7 @@ class SupportedFrame:
         """
     def largest_displacement(self, gravity: numpy.typing.ArrayLike) -> BeamExtreme:
         """
-        Of state(), alone: quicker.
+        The displacement of state() alone: quicker.
         """
     def section_forces(self, gravity: numpy.typing.ArrayLike, member: int, distance: float) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -5517,7 +5517,7 @@ class ObjectPathResult:
     @property
     def violations(self) -> list[int]:
         """
-        Of each pose: 2 out of reach, 1 in collision, 0 neither.
+        For each pose: 2 out of reach, 1 in collision, 0 neither.
         """
 class ObjectPathProblem:
     """
@@ -5620,7 +5620,7 @@ class GraspOptimum:
     @property
     def colliding(self) -> list[int]:
         """
-        Of each pose: at how many all arm configurations collide.
+        For each pose at how many all arm configurations collide.
         """
     @property
     def evaluations(self) -> int:
@@ -5666,7 +5666,7 @@ class GraspOptimum:
     @property
     def overloaded(self) -> list[int]:
         """
-        Of each pose: with how many the pipe bends or bears more than it may.
+        For each pose with how many the pipe bends or bears more than it may.
         """
     @property
     def path(self) -> ObjectPathResult:
@@ -5676,7 +5676,7 @@ class GraspOptimum:
     @property
     def unreachable(self) -> list[int]:
         """
-        Of each pose: how many of the grasps tried do not reach it.
+        For each pose how many of the grasps tried do not reach it.
         """
 class PlacedMesh:
     """
@@ -5751,7 +5751,7 @@ class AssemblyGrasp:
     @property
     def clearance(self) -> float:
         """
-        By how much each finger opens to approach and to let go [m].
+        How far each finger opens to approach and to let go [m].
         """
     @property
     def fingers(self) -> int:
@@ -5766,17 +5766,17 @@ class AssemblyGrasp:
     @property
     def palm_radius(self) -> float:
         """
-        Of the palm and of all behind it [m].
+        Radius of the palm and of all behind it [m].
         """
     @property
     def thickness(self) -> float:
         """
-        Of a finger, along the closing direction [m].
+        Thickness of a finger, along the closing direction [m].
         """
     @property
     def width(self) -> float:
         """
-        Of a finger, across approach and closing direction [m].
+        Width of a finger, across approach and closing direction [m].
         """
 class FingerLengthRange:
     """
@@ -5823,7 +5823,7 @@ class Facet:
     @property
     def centre(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Of area [m], (3,).
+        Centre of its area [m], (3,).
         """
     @property
     def faces(self) -> list[int]:
@@ -5898,6 +5898,10 @@ class Gripper:
         """
         One finger to print: closed, convex, on the palm at z = 0, its pad in the plane x = 0 [m].
         """
+    def hand(self) -> Hand:
+        """
+        The Hand that it is, for planners and samplers: tool frame "tool", names as to_urdf() writes them. Of two fingers only (InvalidInput): a Hand has pads that stand opposite each other. Mounted under a prefix, read it by Hand.from_robot().
+        """
     def holds(self, requirement: SegmentRequirement) -> bool:
         """
         Whether it holds a segment: (5.2) of P1 with <= in place of <, to 1e-9 m.
@@ -5938,7 +5942,7 @@ class Gripper:
     @property
     def max_force(self) -> float:
         """
-        Of each finger's joint [N].
+        Largest force of each finger's joint [N].
         """
     @property
     def max_opening(self) -> float:
@@ -5948,7 +5952,7 @@ class Gripper:
     @property
     def max_speed(self) -> float:
         """
-        Of each finger's joint [m/s].
+        Largest speed of each finger's joint [m/s].
         """
     @property
     def min_opening(self) -> float:
@@ -5958,7 +5962,7 @@ class Gripper:
     @property
     def name(self) -> str:
         """
-        Of its URDF.
+        Name of its URDF.
         """
     @property
     def pad_length(self) -> float:
@@ -5985,7 +5989,7 @@ class GripperActuator:
     @property
     def cost(self) -> float:
         """
-        Of a gripper with this drive.
+        Cost of a gripper with this drive.
         """
     @property
     def fingers(self) -> int:
@@ -6025,7 +6029,7 @@ class MinimalGrippersResult:
     @property
     def changes(self) -> int:
         """
-        Of the gripper from part to part.
+        How often the gripper changes from part to part.
         """
     @property
     def changes_bound(self) -> int:
@@ -6035,7 +6039,7 @@ class MinimalGrippersResult:
     @property
     def cost(self) -> float:
         """
-        Of the grippers and of the changes.
+        Cost of the grippers and of the changes.
         """
     @property
     def explanations(self) -> list[str]:
@@ -6050,7 +6054,7 @@ class MinimalGrippersResult:
     @property
     def grippers(self) -> list[Gripper]:
         """
-        In the order of first use.
+        The grippers in the order of first use.
         """
     @property
     def lower_bound(self) -> float:
@@ -6065,7 +6069,7 @@ class MinimalGrippersResult:
     @property
     def parts(self) -> list[str]:
         """
-        In the order of assembly.
+        Names of the parts in the order of assembly.
         """
     @property
     def requirement_of_part(self) -> list[int]:
@@ -6733,13 +6737,13 @@ def quat_xyzw_from_rotation(R: numpy.typing.ArrayLike) -> numpy.typing.NDArray[n
     """
     Quaternion (x, y, z, w) of a (3, 3) rotation.
     """
-def random_placement(part: collections.abc.Sequence[LinkShape], tray_size: numpy.typing.ArrayLike, *, count: int = 12, fill: float = 1.0, wall: float = 0.005, attempts: int = 100, stack: bool = True, clearance: float = 0.0005, seed: int = 1) -> RandomPlacement:
+def random_placement(part: collections.abc.Sequence[LinkShape], tray_size: numpy.typing.ArrayLike, *, count: int = 12, fill: float = 1.0, wall: float = 0.005, draws: int = 100, stack: bool = True, clearance: float = 0.0005, seed: int = 1) -> RandomPlacement:
     """
     Alike parts lying in a tray at random (P1 3.5.2), let down one after another without touching; `fill` is the share
     of `count` that is there. The tray's frame is the middle of its floor, `tray_size` are outer lengths.
     
     Keyword options:
-        attempts: int = 100  # random places tried for each part
+        draws: int = 100  # random places tried for each part
         stack: bool = True  # a part without a place on the floor may lie on others
         clearance: float = 0.0005  # air left between bodies [m]
         seed: int = 1  # same seed, same places

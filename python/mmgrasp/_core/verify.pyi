@@ -126,7 +126,7 @@ class PlanToCheck:
     """
     def __init__(self, robot: mmgrasp._core.RobotSource) -> None:
         """
-        Of this robot; everything else is set afterwards.
+        A plan for this robot; everything else is set afterwards.
         """
     @property
     def T_base_bin(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -179,7 +179,7 @@ class PlanToCheck:
     @property
     def arrival_covariance(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Of x, y [m^2] and theta [rad^2] about a stop (3, 3); zeros: arrivals are not judged.
+        Covariance of x, y [m^2] and theta [rad^2] about a stop (3, 3); zeros: arrivals are not judged.
         """
     @arrival_covariance.setter
     def arrival_covariance(self, arg0: numpy.typing.ArrayLike) -> None:
@@ -211,7 +211,7 @@ class PlanToCheck:
     @property
     def closing_speed(self) -> float:
         """
-        Of the opening [m/s], for drive_by.
+        How fast the opening shrinks [m/s], for drive_by.
         """
     @closing_speed.setter
     def closing_speed(self, arg0: float) -> None:
@@ -332,7 +332,7 @@ class PlanToCheck:
     @property
     def max_opening(self) -> float:
         """
-        Of the gripper [m].
+        Largest opening of the gripper [m].
         """
     @max_opening.setter
     def max_opening(self, arg0: float) -> None:
@@ -380,7 +380,7 @@ class PlanToCheck:
     @property
     def picks(self) -> list[CheckedPick]:
         """
-        In order.
+        The picks in order.
         """
     @picks.setter
     def picks(self, arg0: collections.abc.Sequence[CheckedPick]) -> None:
@@ -452,7 +452,7 @@ class PlanToCheck:
     @property
     def stops(self) -> list[CheckedStop]:
         """
-        In the order in which they are visited.
+        The stops in the order in which they are visited.
         """
     @stops.setter
     def stops(self, arg0: collections.abc.Sequence[CheckedStop]) -> None:

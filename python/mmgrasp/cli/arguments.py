@@ -301,7 +301,7 @@ def _path(text: str) -> Path:
 
 
 def _source(text: str) -> str:
-    """Of a file, or a name of a shipped one."""
+    """Path of a file, or the name of a shipped one."""
     return str(_path(text))
 
 

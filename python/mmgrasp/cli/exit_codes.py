@@ -7,7 +7,7 @@ NOTHING_USABLE = 3  # none of the frames of a scan
 
 
 def exit_code(outcome: Outcome) -> int:
-    """Of an outcome: without an answer, whether it is proven that there is none or none was found."""
+    """The exit code of an outcome: without an answer, whether it is proven that there is none or none was found."""
     return {
         Outcome.solved: DONE,
         Outcome.infeasible: IMPOSSIBLE,

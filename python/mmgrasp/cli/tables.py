@@ -53,7 +53,7 @@ def summary(plan: ScenarioPlan) -> Table:
 
 
 def _probabilities(plan: ScenarioPlan) -> str:
-    """Of the grasps that were found in a scan."""
+    """Probabilities of the grasps that were found in a scan."""
     trays = plan.scenario.trays
     found = [trays[p.tray].tray.parts[p.part].grasps[p.grasp].quality for p in plan.picks if trays[p.tray].scan]
     return (

@@ -71,7 +71,7 @@ def code_digest() -> str:
 
 
 def arm_key(arm: JointGroup) -> str:
-    """Of the robot, and of where its other joints are held, by the poses they give its links."""
+    """Key of the robot, and of where its other joints are held, by the poses they give its links."""
     lowest = arm.link_poses(arm.sample_lower)
     return Hasher().add([arm.robot.hash, arm.names, arm.tip]).add({n: lowest[n] for n in sorted(lowest)}).hex()
 

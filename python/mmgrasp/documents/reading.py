@@ -130,7 +130,7 @@ class Node:
         raise InvalidInput(printable(f"{self.place}: {self.name}: unknown key{hint}"))
 
     def read_version(self, current: int, renamed: Mapping[str, str] | None = None) -> None:
-        """Of a file: its key `version` must be the current one; of keys of older ones says what they are called now."""
+        """Checks a file's version: its key `version` must be the current one. Says what keys of older ones are called now."""
         if self["version"].integer() != current:
             used = _keys(self.raw)
             old = ", ".join(f"{old} is {new}" for old, new in (renamed or {}).items() if old in used)
@@ -161,7 +161,7 @@ class Node:
 
     # --- lists ----------------------------------------------------------------------------------------------------
     def elements(self) -> list[Node]:
-        """Of a list."""
+        """The elements of a list."""
         if not isinstance(self.raw, list):
             self.fail("must be a list")
         return [self.child(i) for i in range(len(self.raw))]
@@ -267,7 +267,7 @@ def _all_numbers(raw: Any) -> bool:
 
 
 def _keys(raw: Any) -> set[str]:
-    """Of all mappings in a document."""
+    """The keys of all mappings in a document."""
     if isinstance(raw, Mapping):
         return {str(key) for key in raw}.union(*map(_keys, raw.values()))
     return set().union(*map(_keys, raw)) if isinstance(raw, list) else set()

@@ -38,7 +38,7 @@ class PngHeader:
 
 
 def png_header(data: bytes, what: str) -> PngHeader:
-    """Of the beginning of a file (33 bytes at least). Raises InvalidInput naming `what`."""
+    """Reads the header at the beginning of a file (33 bytes at least). Raises InvalidInput naming `what`."""
     if data[:8] != SIGNATURE:
         raise InvalidInput(f"{what}: is no PNG file")
     if len(data) < 33:

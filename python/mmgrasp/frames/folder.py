@@ -76,7 +76,7 @@ class FrameFolder:
         self.path = path
         self.sensors = sensors
         self.layouts = layouts
-        """By the sensor's folder."""
+        """Layout of each sensor, by its folder."""
         self.frames = frames
         self.from_file = any(sensor.place for sensor in sensors.values())
         """The sensors come from a file; otherwise they are assumed."""

@@ -23,7 +23,7 @@ class Frame:
     """Path of the depth image below the folder."""
     path: Path
     sensor: str
-    """Of the sensors' file; empty: the frame itself names it."""
+    """Name in the sensors' file; empty: the frame itself names it."""
     pose: np.ndarray | Path | None = None
     """(4, 4) as the layout gives it, the file it is in, or None: in `path` itself."""
     problem: str = ""

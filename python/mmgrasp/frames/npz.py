@@ -42,7 +42,7 @@ def found(folder: Path) -> bool:
 
 
 def frames(folder: Path, root: Path, sensor: str) -> list[Frame]:
-    """By name."""
+    """Frames in the order of their names."""
     return [Frame(path.relative_to(root).as_posix(), path, sensor) for path in sorted(folder.glob("*.npz"))]
 
 

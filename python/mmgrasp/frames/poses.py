@@ -89,7 +89,7 @@ def between(first: np.ndarray, second: np.ndarray, share: float) -> np.ndarray:
 
 
 def inverse(T: np.ndarray) -> np.ndarray:
-    """Of a rigid motion."""
+    """Inverse of a rigid motion."""
     out = np.eye(4)
     out[:3, :3] = T[:3, :3].T
     out[:3, 3] = -T[:3, :3].T @ T[:3, 3]

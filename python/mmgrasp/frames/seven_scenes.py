@@ -17,7 +17,7 @@ def found(folder: Path) -> bool:
 
 
 def frames(folder: Path, root: Path, sensor: str) -> list[Frame]:
-    """By name; each with its pose file."""
+    """Frames in the order of their names, each with its pose file."""
     below = folder.relative_to(root)
     images = {path.name.removesuffix(IMAGE): path for path in folder.glob(f"*{IMAGE}")}
     poses = {path.name.removesuffix(POSE): path for path in folder.glob(f"*{POSE}")}

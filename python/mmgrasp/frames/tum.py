@@ -137,7 +137,7 @@ def _depth_columns(words: list[str], path: Path, place: str) -> tuple[str, str]:
 
 
 def _pose_at(time: float, times: list[float], poses: list[np.ndarray]) -> np.ndarray | None:
-    """Of that very time, or between its neighbours where both are near."""
+    """The pose of that very time, or between its neighbours where both are near."""
     i = bisect.bisect_left(times, time)
     if i < len(times) and times[i] == time:
         return poses[i]

@@ -44,7 +44,7 @@ class AssemblyStep:
     active: list[str]
     passive: list[str]
     path: list[Pose]
-    """Of the active parts, from before the operation to their places: T_assembly_active where each place is the identity."""
+    """Poses of the active parts, from before the operation to their places: T_assembly_active where each place is the identity."""
 
 
 @dataclass
@@ -73,7 +73,7 @@ class Assembly:
     actuators: list[GripperActuator]
     fingers: FingerChoice
     options: dict[str, Any] = field(default_factory=dict)
-    """Of minimal_grippers."""
+    """Options of minimal_grippers."""
     unit: str = "m"
 
     def __repr__(self) -> str:

@@ -60,7 +60,7 @@ PARTS = {
     "12": Composed((((32.8, 52.0), 14), ((15.0, 28.0), 30))),
     "13": Composed(((18.75, 34),)),
 }
-"""By P1's numbers, in the order of assembly."""
+"""Parts by P1's numbers, in the order of assembly."""
 ROTOR = Composed(((8.0, 20), (14.0, 14), ((30.0, 46.0), 20), (14.0, 12), (10.0, 25), (6.0, 16)))
 """As the rotor of P1's figure 5.7 b: five round segments and one, the third, that is held by its flat sides."""
 SLEEVE = Composed(((17.0, 30), (25.0, 12)), bore=11)

@@ -42,11 +42,11 @@ class SegmentFate:
     tried: int = 0
     """Grasps of it."""
     free: int = 0
-    """Of those, with some finger length."""
+    """How many of those have some finger length."""
     refused: str = ""
     """Why it cannot be held, or what most of its grasps fell by."""
     requirements: list[int] = field(default_factory=list)
-    """Of the plan's, by number."""
+    """Numbers of the plan's requirements."""
 
 
 @dataclass
@@ -64,7 +64,7 @@ class GripperPlan:
     """Operations without any grasp, each with the reason."""
     result: MinimalGrippersResult | None
     rehearsed: dict[str, str] = field(default_factory=dict)
-    """By operation: what the chosen gripper met when the operation was gone through again by the collision checker; '' nothing."""
+    """For each operation what the chosen gripper met when the operation was gone through again by the collision checker; '' nothing."""
 
     @property
     def outcome(self) -> Outcome:
@@ -225,7 +225,7 @@ def _try_grasps(
 def _undominated(
     found: list[tuple[float, FingerLengthRange, AssemblyGrasp]],
 ) -> list[tuple[float, FingerLengthRange, AssemblyGrasp]]:
-    """Of each opening the grasps whose lengths no other one's hold; the first of equals."""
+    """For each opening the grasps whose lengths no other one's hold; the first of equals."""
     kept: list[tuple[float, FingerLengthRange, AssemblyGrasp]] = []
     for opening, lengths, grasp in sorted(found, key=lambda f: (f[0], f[1].shortest, -f[1].longest)):
         if not any(

@@ -43,7 +43,7 @@ class Arrival:
     """The plan's disc around it [m]: within it, at the planned heading, every part stays graspable."""
     outcome: Outcome
     picks: list[_core.Pick]
-    """In order; without a solution those that failed, `failed_at` names the stage."""
+    """The picks in order; without a solution those that failed, `failed_at` names the stage."""
     seconds: float
     """What planning took, without reading files."""
 
@@ -54,7 +54,7 @@ class Arrival:
 
     @property
     def turned(self) -> float:
-        """By how much it is turned against the planned heading [rad], from -pi to pi."""
+        """How far it is turned against the planned heading [rad], from -pi to pi."""
         return math.remainder(float(self.pose[2] - self.planned[2]), math.tau)
 
     @property

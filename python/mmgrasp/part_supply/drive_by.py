@@ -47,7 +47,7 @@ class DriveByPick:
     stop_and_pick: float
     """Drive, reach, approach, close, lift, one after the other [s]."""
     opening: float
-    """Of the hand as it comes [m]."""
+    """Opening of the hand as it comes [m]."""
     dwell: float
     """The fingers close and press this long [s]."""
     result: _core.DriveByResult
@@ -290,7 +290,7 @@ def _exactly(start: np.ndarray, goal: list[float]) -> np.ndarray:
 
 
 def _openings(problem: _core.PartSupplyProblem, pick: Pick) -> tuple[float, float]:
-    """Of the open hand and of the hand around the part [m]."""
+    """Openings of the open hand and of the hand around the part [m]."""
     width = problem.trays[pick.tray].parts[pick.part].grasps[pick.grasp].opening
     return pick.motions[0].opening, width
 

@@ -66,7 +66,7 @@ class PipePlan:
 
     @property
     def outcome(self) -> Outcome:
-        """Of the search, or why there is no motion; no more than approximate where a cheaper grasp could not be timed."""
+        """The search's outcome, or why there is no motion; no more than approximate where a cheaper grasp could not be timed."""
         found = self.optimum.outcome
         return Outcome.approximate if self.untimed > 0 and found == Outcome.solved else found
 

@@ -12,7 +12,7 @@ OBJECTIVES = ("motion", "deflection", "manipulability")
 """Joint motion (O1), sag (O2), force manipulability (O3) of P2 3.2.3.3, in this order in comparison matrices, too."""
 
 NAMED_WEIGHTS = {"p2": (0.587, 0.089, 0.324), "p2_printed": (0.56, 0.12, 0.32)}
-"""Of P2's comparison matrix by P2's method (the default), and those that P2 prints for it, which belong to another matrix."""
+"""Weights of P2's comparison matrix by P2's method (the default), and those that P2 prints for it, which belong to another matrix."""
 
 
 @dataclass(frozen=True)
@@ -23,7 +23,7 @@ class Preferences:
     """Weights and scales as ObjectPathOptions calls them; empty: the library's own."""
     source: str = "P2's comparison matrix, the default"
     consistency_ratio: float | None = None
-    """Of the comparison matrix, when one was given."""
+    """Consistency ratio of the comparison matrix, when one was given."""
 
 
 def read_preferences(root: Node) -> Preferences:

@@ -10,7 +10,18 @@ from typing import Any
 import numpy as np
 
 from .. import _core
-from .._core import BeamFrame, Grasp, Hand, InvalidInput, JointGroup, ObjectPathProblem, Pipe, Robot, World
+from .._core import (
+    BeamFrame,
+    Grasp,
+    Hand,
+    InvalidInput,
+    JointGroup,
+    ManipulationProblem,
+    ObjectPathProblem,
+    Pipe,
+    Robot,
+    World,
+)
 from .._files import ASSETS, shipped
 from .._progress import Progress
 from ..documents.reading import Node, near_miss, read_yaml
@@ -65,7 +76,7 @@ class PipeProblem:
     compare: list[Grasp] = field(default_factory=list)
     """Grasps that the file wants costed beside the best one."""
     path_options: dict[str, Any] = field(default_factory=dict)
-    """Of ObjectPathOptions, without weights, scales and limits."""
+    """Fields of ObjectPathOptions, without weights, scales and limits."""
     search_options: dict[str, Any] = field(default_factory=dict)
 
     @property
@@ -99,6 +110,20 @@ class PipeProblem:
             gripper=self.gripper,
             touch_links=sorted(self.gripper.finger_links),
             frame=self.frame,
+            object_name=PIPE,
+        )
+
+    def manipulation_problem(self, grasps: list[Grasp]) -> ManipulationProblem:
+        """For plan_manipulation: the pipe from its first pose to its last any way, with any of these grasps; only the fingers may touch it."""
+        return ManipulationProblem(
+            self.arm,
+            self.world,
+            self.pipe.shapes(),
+            self.T_world_pipe[0],
+            self.T_world_pipe[-1],
+            grasps,
+            gripper=self.gripper,
+            touch_links=sorted(self.gripper.finger_links),
             object_name=PIPE,
         )
 

@@ -121,7 +121,7 @@ class PipeCell:
     """A pipe, where it lies and where it belongs, and the cell around the arm."""
 
     number: int
-    """Of the structure, from 1."""
+    """Number of the structure, from 1."""
     seed: int
     robot_name: str
     style: str

@@ -250,7 +250,7 @@ def _fault(cell: PipeCell) -> str:
 
 
 def _fault_of_ends(cell: PipeCell) -> str:
-    """By inverse kinematics of all grasps, and by all straight joint lines between their ends."""
+    """Judges by inverse kinematics of all grasps, and by all straight joint lines between their ends."""
     problem = cell.problem(cell.grasps(_GRASPS, seed=_GRASP_SEED))
     nothing_joined = Roadmap.build(cell.arm, vertices=2, gamma=1e-9)
     lines = plan_manipulation(problem, roadmap=nothing_joined, first_grasps=0, shorten=False, time_limit=600.0)

@@ -42,7 +42,7 @@ class TrayScan:
 
     @property
     def grasps(self) -> list[Grasp]:
-        """Of all parts seen, in the world."""
+        """Grasps of all parts seen, in the world."""
         return self.found.grasps
 
 

@@ -29,7 +29,7 @@ UP_TO_THE_FAR_OBJECT = (1.6, 1.0, 2.6)  # the grid's upper corner, so that its e
 
 
 class ShelfSizes(TypedDict):
-    """Of the shelf and where it stands [m]."""
+    """Sizes of the shelf and where it stands [m]."""
 
     boards: list[float]  # heights
     depth: float

@@ -79,7 +79,7 @@ class Result:
         self.checks.append(Check("T", what, bool(holds), clock))
 
     def statement(self, what: str, pairs: Iterable[Pair], *, clock: bool = False) -> None:
-        """Of the paper, that one way gives more than another; left out when there is nothing to compare."""
+        """A statement of the paper: that one way gives more than another; left out when there is nothing to compare."""
         found = difference(pairs)
         if found is not None:
             self.checks.append(Check("S", f"{what}: {found}", found.answer != REVERSED, clock, found.answer))

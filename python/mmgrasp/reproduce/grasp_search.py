@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 EVALUATIONS, SECONDS, SUCCESS = "grasp evaluations", "time [s]", "success [%]"
-# Of METHODS, in their order.
+# One of METHODS each, in their order.
 TABLE_3_7 = {EVALUATIONS: (1100, 845, 832, 2172, 1205), SECONDS: (31.4, 40.1, 37.5, 76.49, 49.7), SUCCESS: (100, 100, 100, 93.3, 98)}  # fmt: skip
 TABLE_3_8 = {EVALUATIONS: (1572, 1192, 1168, 2699, 1891), SECONDS: (41, 57.4, 51.4, 92.4, 93.2), SUCCESS: (98.9, 98.5, 99.6, 76.8, 81.3)}  # fmt: skip
 TABLE_3_9 = {"Pipe1": (0, 0, 2, 46, 154), "Pipe2": (9, 2, 2, 76, 7), "Pipe3": (5, 18, 1, 191, 91), "Total": (14, 20, 5, 313, 252)}  # fmt: skip
@@ -141,7 +141,7 @@ def draw_optima(stored: dict[str, Any]) -> Figure:
 
 # --- tables 3.7 to 3.9 ------------------------------------------------------------------------------------------------
 def _half(d: dict[str, Any], which: int) -> dict[str, Any]:
-    """Of the runs in one setting every second: those that choose the setting (0), those that tell of it (1)."""
+    """Every second of the runs in one setting: those that choose the setting (0), those that tell of it (1)."""
     return {key: value[which::2] if isinstance(value, list) else value for key, value in d.items()}
 
 

@@ -122,7 +122,7 @@ def search(pipe: str, home: tuple[float, ...] | None = None, **options: Any) -> 
 
 
 def free_configurations(pipe: str, count: int, seed: int) -> list[tuple[float, ...]]:
-    """Of the arm without a pipe, evenly within its limits."""
+    """Configurations of the arm without a pipe, evenly within its limits."""
     robot, arm, _ = pipe_robot("kr6like")
     checker = _core.CollisionChecker(robot, path_problem(pipe).world, group=arm)
     rng = np.random.default_rng(seed)
@@ -159,7 +159,7 @@ def optimum(pipe: str, seed: int, boxes: int, evaluations: int, threads: int) ->
 
 
 def on_all_cores(run: Callable[[int], Any], runs: int) -> list[Any]:
-    """Of each run its own seed; the calls below leave Python free meanwhile."""
+    """Gives each run its own seed; the calls below leave Python free meanwhile."""
     with ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
         return list(pool.map(run, range(runs)))
 
@@ -216,7 +216,7 @@ def _once(what: str, context: Context, compute: Callable[[], Any]) -> Any:
 
 
 def optima(context: Context) -> dict[str, dict[str, Any]]:
-    """Of each pipe."""
+    """The optimum of each pipe."""
 
     def compute() -> dict[str, dict[str, Any]]:
         pipes, _, _, boxes, evaluations = scale_of(context)

@@ -77,12 +77,12 @@ def items_of(context: Context, problems: Iterable[int], runs: int) -> list[dict[
 
 
 def seeds_of(context: Context) -> range:
-    """Of the cells: 1 to 3 with the first seed, 4 to 6 with the second."""
+    """Seeds of the cells: 1 to 3 with the first seed, 4 to 6 with the second."""
     return range(SEEDS * (context.seed - 1) + 1, SEEDS * context.seed + 1)
 
 
 def paired(done: Iterable[dict[str, Any]], values: Iterable[tuple[float | None, float | None]]) -> list[Pair]:
-    """Of each run, which says where it belongs, two values: first the one that is to be larger."""
+    """Two values of each run, which says where it belongs: first the one that is to be larger."""
     return [Pair(d["seed"], d["number"], *two) for d, two in zip(done, values, strict=True)]
 
 

@@ -56,7 +56,7 @@ def _scale(context: Context) -> tuple[list[int], int, tuple[int, ...], int]:
 
 # --- table 4.1 --------------------------------------------------------------------------------------------------------
 def successes(number: int, seed: int, run: int, counts: tuple[int, ...], vertices: int) -> dict[str, Any]:
-    """Of one run, whether each number of grasps suffices over the run's roadmap. More grasps never lose a solution."""
+    """Whether in one run each number of grasps suffices over the run's roadmap. More grasps never lose a solution."""
     found: dict[str, list[dict[str, Any]]] = {}
     for way, (style, gamma) in WAYS.items():
         cell = pipe_cell(number, seed, style=style)

@@ -40,7 +40,7 @@ class Row:
     spacing: float = 0.5
     """Between the middles of neighbouring trays [m]."""
     shift: float = 0.0
-    """Of the whole row along itself [m]."""
+    """Shift of the whole row along itself [m]."""
     middles: tuple[float, ...] | None = None
     """Middles of the trays along the row [m]; None: by trays and spacing."""
     targets: tuple[tuple[int, ...], ...] | None = None
@@ -52,9 +52,9 @@ class Row:
     torso: float = 0.38
     """Where the torso lift stands [m]: P1 plans for the arm's seven joints."""
     turn: float = 0.0
-    """Of the fingers' closing direction against the row's [rad]."""
+    """Angle of the fingers' closing direction against the row's [rad]."""
     tilt: float = np.pi / 6
-    """Of the approach from straight down towards the robot's heading [rad]."""
+    """Angle of the approach from straight down towards the robot's heading [rad]."""
     deep: bool = False
     """The tray's 40 cm lie along x (away from the robot) instead of along the row."""
     ik_seeds: int = 8

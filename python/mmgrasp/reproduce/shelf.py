@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 FRONT, DEPTH, WIDTH, THICK = 0.48, 0.40, 0.90, 0.02  # of the shelf, from the middle of the base [m]
 BOARDS = (0.52, 0.84, 1.16, 1.48)  # heights of the boards' middles [m]
 START = (0.0, -0.18, -2.8, -1.57, -1.57, 0.0)  # tucked
-# Of goals 1 to 4: distance of the arm from everything else [m], from and below.
+# Goals 1 to 4: distance of the arm from everything else [m], from and below.
 CLEARANCES = ((0.02, np.inf), (0.01, 0.02), (0.005, 0.01), (0.0, 0.005))
 SOON = 0.1  # beside the time limit, which hardly tells the planners apart today [s]
 TILT = 0.5  # of the tool against the way into the shelf, at most, about either axis [rad]
@@ -37,7 +37,7 @@ class Planner(NamedTuple):
     """As it is: what of it is the library's, and what is ours."""
 
     name: str
-    """Of plan_motion."""
+    """Name that plan_motion takes."""
     paper: str
     """The planner of P3 that it stands for."""
     near_end_probability: float = 0.2

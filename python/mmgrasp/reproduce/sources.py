@@ -27,7 +27,7 @@ SOURCES: dict[str, tuple[str, ...]] = {
     "p1-figure-4.12": _SIM,
     "p1-table-3.5-drive-by": (*_TRAJOPT, "cpp/src/task/part_supply", "python/mmgrasp/reproduce/three_ways.py"),
 }
-"""By result: folders and files of the repository."""
+"""Folders and files of the repository, by result."""
 
 
 def sources_hash(name: str, repository: Path) -> str | None:

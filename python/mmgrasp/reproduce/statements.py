@@ -26,13 +26,13 @@ class Pair:
     seed: int
     cell: Hashable
     larger: float | None
-    """By the paper's statement."""
+    """The value that the paper states to be larger."""
     smaller: float | None
 
 
 @dataclass(frozen=True)
 class Difference:
-    """Of the larger (by the statement) less the smaller."""
+    """Difference of the larger (by the statement) less the smaller."""
 
     mean: float
     half: float

@@ -18,7 +18,7 @@ from ..frames.sensors import Sensor
 
 STAGE = "integrating frames"
 DEFAULTS: dict[str, Any] = {name: value for name, (value, _) in _sdf_option_table().items()}
-"""Of the library's options."""
+"""Defaults of the library's options."""
 _MOST_INVERTED = 3
 
 

@@ -92,7 +92,7 @@ def objects_on_plane(
 
 
 def _area(points: np.ndarray, leaf: float) -> float:
-    """Of the surface, roughly [m^2]: cells of edge `leaf` that hold points."""
+    """Area of the surface, roughly [m^2]: cells of edge `leaf` that hold points."""
     return leaf**2 * len(_unique_cells(points, leaf))
 
 

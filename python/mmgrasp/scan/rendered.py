@@ -35,7 +35,7 @@ class Tour:
 
     views: int = 16
     distance: float = 0.6
-    """Of the eye from what it looks at [m]."""
+    """Distance of the eye from what it looks at [m]."""
     noise: float = 0.002
     """Standard deviation of a depth at 1 m; it grows with the square of the depth [m]."""
     seed: int = 1

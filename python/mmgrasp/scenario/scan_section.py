@@ -23,7 +23,7 @@ from .map_bodies import Footprint, cell_boxes, cells_around, inside_boxes, large
 
 SIGMAS = 2.0
 SAMPLES, MOST_GRASPS = 800, 40
-"""Of synthesize_grasps for each part: base regions want more grasps to choose from than one arm at one place."""
+"""Options of synthesize_grasps for each part: base regions want more grasps to choose from than one arm at one place."""
 _WIDTH_PLAY = 0.0025  # pads on the part's columns and on the map's mean may differ by so much [m]
 _MOST_RENDERED = {"views": 500, "distance": 2.0, "noise": 0.02, "seed": 1_000_000}
 _PAD = 0.0005  # half the side of these pads [m]
@@ -40,7 +40,7 @@ class TrayScan:
     grasp_options: dict[str, Any]
 
     def to_dict(self, tray: str) -> dict[str, Any]:
-        """Of a plan's `scenario.scans`."""
+        """An entry of a plan's `scenario.scans`."""
         path = str(self.map_file)
         return {
             "tray": tray,
@@ -129,7 +129,7 @@ class ScanReader:
         return parts, TrayScan(made.folder / MAP, sigmas, options), reasons
 
     def rest(self, known: list[tuple[list[LinkShape], np.ndarray]]) -> list[tuple[str, list[LinkShape]]]:
-        """Of each map a name and boxes in the world: cells around its surface, as far as `sigmas` standard deviations, where that
+        """For each map a name and boxes in the world: cells around its surface, as far as `sigmas` standard deviations, where that
         is not that of a `known` body or of a part."""
         out = []
         for made in self._maps.values():

@@ -58,7 +58,7 @@ class Scenario:
     """Height of level ground [m]; None: there is none."""
     rules: ContactRules = field(default_factory=ContactRules)
     arrival_covariance: np.ndarray | None = None
-    """Of x, y [m^2] and theta [rad^2] about a stop (3, 3); None: discs are all that counts."""
+    """Covariance of x, y [m^2] and theta [rad^2] about a stop (3, 3); None: discs are all that counts."""
 
     @property
     def world(self) -> World:

@@ -39,7 +39,7 @@ class Execution:
     close_at: float | None = None
     """Plan time at which the gripper begins to close [s]; None: at the plan's end."""
     opening: float | None = None
-    """Of the gripper at first [m]; None: fully open."""
+    """Opening of the gripper at first [m]; None: fully open."""
     closing_speed: float = 0.1
     """How fast the opening shrinks [m/s] (P1 4.4.1); not stretched by `speed`."""
     lift: float = 0.1

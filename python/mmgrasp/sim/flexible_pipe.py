@@ -49,7 +49,7 @@ class PipeMotion:
     displacement: np.ndarray
     """The largest over the pipe at each time [m]."""
     duration: float
-    """Of the arm's motion; afterwards it stands still [s]."""
+    """Duration of the arm's motion; afterwards it stands still [s]."""
 
     @property
     def peak(self) -> float:
@@ -76,7 +76,7 @@ class FlexiblePipe:
     pieces: int = 8
     """Elements a section (or part of the one that is held)."""
     damping_ratio: float = 0.01
-    """Of the slowest mode; springs and dampers are proportional."""
+    """Damping ratio of the slowest mode; springs and dampers are proportional."""
     time_step: float = 1e-4
     """[s]"""
     gravity: float = 9.81

@@ -38,7 +38,7 @@ class Passing:
     """One trial."""
 
     share: float = 1.0
-    """Of FULL_SPEED, in (0, 1]."""
+    """Share of FULL_SPEED, in (0, 1]."""
     push: bool = True
     """Push-grasp, or plain closing so that both fingers touch at the planned pose (P1 figure 4.7)."""
     along: float = 0.0
@@ -51,7 +51,7 @@ class Passing:
 
     @property
     def speed(self) -> float:
-        """Of base and hand [m/s]."""
+        """Speed of base and hand [m/s]."""
         return self.share * FULL_SPEED
 
     def closing(self) -> PushGrasp:

@@ -54,13 +54,6 @@ TEST(Unicycle, ArcVelocityIsTheInverse) {
   }
 }
 
-TEST(Unicycle, AnglesWrapIntoOneTurn) {
-  EXPECT_NEAR(wrapped_angle(7), 7 - 2 * M_PI, 1e-15);
-  EXPECT_EQ(wrapped_angle(M_PI), M_PI);
-  EXPECT_EQ(wrapped_angle(-M_PI), M_PI);
-  EXPECT_EQ(wrapped_angle(-0.5), -0.5);
-}
-
 TEST(Unicycle, BadNumbersAreRefused) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(drive_arc({nan, 0, 0}, Vector3d::Zero(), 1), InvalidInput);

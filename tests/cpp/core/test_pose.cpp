@@ -115,7 +115,9 @@ TEST(Pose, WrapAngle) {
   EXPECT_EQ(wrap_angle(-M_PI), M_PI);
   EXPECT_NEAR(wrap_angle(5 * M_PI / 2), M_PI / 2, 1e-15);
   EXPECT_NEAR(wrap_angle(-7.0), -7.0 + 2 * M_PI, 1e-15);
+  EXPECT_NEAR(wrap_angle(7), 7 - 2 * M_PI, 1e-15);
   EXPECT_EQ(wrap_angle(0.25), 0.25);
+  EXPECT_EQ(wrap_angle(-0.5), -0.5);
 }
 
 TEST(Pose, PlanarIsAPoseOnTheFloor) {

@@ -97,7 +97,7 @@ TEST(RandomPlacement, FullTraysSayWhatDidNotFit) {
   PlacementOptions options;
   options.count = 60;
   options.stack = false;
-  options.attempts = 30;
+  options.draws = 30;
   const auto placed = random_placement({at(Box{{0.08, 0.08, 0.08}})}, {0.3, 0.3, 0.1}, 0.005, options);
   EXPECT_GT(placed.not_placed, 45);
   for (const PlacedPart& part : placed.parts) EXPECT_TRUE(part.on_floor);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <set>
 
 #include "mmgrasp/collision/checker.hpp"
 #include "mmgrasp/collision/world.hpp"
@@ -96,6 +97,43 @@ TEST(Gripper, JawsAreReadAsAHand) {
   EXPECT_NEAR(hand.min_opening, g.min_opening, 1e-6);
   EXPECT_LT((hand.approach - Eigen::Vector3d::UnitZ()).norm(), 1e-9);
   EXPECT_NEAR(std::abs(hand.closing.x()), 1, 1e-9);
+}
+
+TEST(Gripper, ItsHandIsTheOneThatIsReadFromItsFiles) {
+  for (const double min_opening : {0.0, 0.01}) {
+    Gripper g;
+    g.name = "jaws";
+    g.min_opening = min_opening;
+    g.finger_length = 0.045;
+    g.to_urdf(folder("same_hand"));
+    const Robot robot = Robot::load(folder("same_hand") + "/gripper.urdf", folder("same_hand") + "/gripper.srdf");
+    const Hand read = Hand::from_robot(robot, "tool"), hand = g.hand();
+    EXPECT_NO_THROW(hand.check());
+    EXPECT_EQ(hand.tool_link, read.tool_link);
+    EXPECT_EQ(hand.kind, read.kind);
+    EXPECT_EQ(hand.groups(), read.groups());
+    EXPECT_EQ(std::set<std::string>(hand.finger_links.begin(), hand.finger_links.end()),
+              std::set<std::string>(read.finger_links.begin(), read.finger_links.end()));
+    EXPECT_LT((hand.approach - read.approach).norm(), 1e-9);
+    EXPECT_LT(hand.closing.cross(read.closing).norm(), 1e-9);
+    EXPECT_NEAR(hand.min_opening, read.min_opening, 1e-6);
+    EXPECT_NEAR(hand.max_opening, read.max_opening, 1e-6);
+    EXPECT_NEAR(hand.finger_depth, read.finger_depth, 1e-6);
+    EXPECT_NEAR(hand.finger_width, read.finger_width, 1e-6);
+    EXPECT_NEAR(hand.clearance, read.clearance, 1e-12);
+    EXPECT_NEAR(hand.body.finger_thickness, read.body.finger_thickness, 1e-6);
+    EXPECT_NEAR(hand.body.finger_length, read.body.finger_length, 1e-6);
+    EXPECT_NEAR(hand.body.palm_length, read.body.palm_length, 1e-6);
+    EXPECT_NEAR(hand.body.palm_width, read.body.palm_width, 1e-6);
+    for (const double opening : {g.min_opening, 0.02, g.max_opening}) {
+      const auto values = hand.joint_values(opening), expected = read.joint_values(std::min(opening, read.max_opening));
+      ASSERT_EQ(values.size(), expected.size());
+      for (const auto& [joint, value] : values) EXPECT_NEAR(value, expected.at(joint), 1e-6) << joint;
+    }
+  }
+  Gripper centric;
+  centric.fingers = 3;
+  EXPECT_THROW(centric.hand(), InvalidInput);
 }
 
 TEST(Gripper, Refusals) {

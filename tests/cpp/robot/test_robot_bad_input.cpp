@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "bad_case.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/robot/joint_group.hpp"
 #include "mmgrasp/robot/robot.hpp"
@@ -10,14 +11,8 @@ using namespace mmgrasp;
 
 namespace {
 
-struct BadCase {
-  const char* what;
-  std::string urdf;
-  std::vector<std::string> reported;  ///< Every one must stand in the message.
-};
-
 std::string robot(const std::string& inside) {
-  return "<robot name=\"r\">\n" + inside + "\n</robot>";
+  return test::robot_element(inside);
 }
 
 std::string joint(const std::string& inside, const std::string& type = "revolute") {
@@ -36,7 +31,7 @@ std::string fixed(const std::string& name, const std::string& parent, const std:
 
 const std::string kLimit = "<limit lower=\"-1\" upper=\"1\" velocity=\"1\" effort=\"1\"/>";
 
-std::vector<BadCase> bad_cases() {
+std::vector<test::BadCase> bad_cases() {
   std::string deep;
   for (int i = 0; i < 100000; ++i) deep += "<a>";
   std::string close;
@@ -140,24 +135,14 @@ std::vector<BadCase> bad_cases() {
 }  // namespace
 
 TEST(RobotBadInput, EachIsRefusedWithFilePlaceValueAndRule) {
-  for (const BadCase& bad : bad_cases()) {
-    std::string message;
-    try {
-      Robot::from_strings(bad.urdf, "", {}, "bad.urdf");
-    } catch (const InvalidInput& error) {
-      message = error.what();
-    }
-    ASSERT_NE(message, "") << bad.what << " was accepted";
-    EXPECT_NE(message.find("bad.urdf"), std::string::npos) << bad.what << ": " << message;
-    for (const std::string& part : bad.reported)
-      EXPECT_NE(message.find(part), std::string::npos) << bad.what << ": " << message;
-  }
+  test::expect_refused(bad_cases(), "bad.urdf",
+                       [](const std::string& urdf) { Robot::from_strings(urdf, "", {}, "bad.urdf"); });
 }
 
 TEST(RobotBadInput, NothingIsPrinted) {
   testing::internal::CaptureStderr();
   testing::internal::CaptureStdout();
-  for (const BadCase& bad : bad_cases()) EXPECT_THROW(Robot::from_strings(bad.urdf), InvalidInput);
+  for (const test::BadCase& bad : bad_cases()) EXPECT_THROW(Robot::from_strings(bad.text), InvalidInput);
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
   EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
 }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "bad_case.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/robot/robot.hpp"
 
@@ -11,24 +12,18 @@ using namespace mmgrasp;
 
 namespace {
 
-struct BadCase {
-  const char* what;
-  std::string srdf;
-  std::vector<std::string> reported;  ///< Every one must stand in the message.
-};
-
 const char* kUrdf = R"(<robot name="r"><link name="base"/><link name="upper"/><link name="fore"/><link name="tool"/>
   <joint name="j1" type="revolute"><parent link="base"/><child link="upper"/><limit lower="-1" upper="1" velocity="1"/></joint>
   <joint name="j2" type="revolute"><parent link="upper"/><child link="fore"/><limit lower="-1" upper="1" velocity="1"/></joint>
   <joint name="flange" type="fixed"><parent link="fore"/><child link="tool"/></joint></robot>)";
 
 std::string srdf(const std::string& inside) {
-  return "<robot name=\"r\">\n" + inside + "\n</robot>";
+  return test::robot_element(inside);
 }
 
 const std::string kArm = "<group name=\"arm\"><chain base_link=\"base\" tip_link=\"tool\"/></group>\n";
 
-std::vector<BadCase> refused() {
+std::vector<test::BadCase> refused() {
   std::string deep;
   for (int i = 0; i < 100000; ++i) deep += "<a>";
   std::string nested = "<group name=\"g0\"><joint name=\"j1\"/></group>";
@@ -92,7 +87,7 @@ std::vector<BadCase> refused() {
 }
 
 /// Files of other versions of a robot are in use: what they name and the robot lacks is left out, and said.
-std::vector<BadCase> warned() {
+std::vector<test::BadCase> warned() {
   return {
       {"of another robot", "<robot name=\"panda\"></robot>", {"bad.srdf:1", "\"panda\"", "\"r\""}},
       {"misspelt element",
@@ -137,34 +132,19 @@ std::vector<BadCase> warned() {
   };
 }
 
-bool holds_all(const std::string& text, const std::vector<std::string>& parts) {
-  for (const std::string& part : parts)
-    if (text.find(part) == std::string::npos) return false;
-  return true;
-}
-
 }  // namespace
 
 TEST(SrdfBadInput, EachIsRefusedWithFilePlaceValueAndRule) {
-  for (const BadCase& bad : refused()) {
-    std::string message;
-    try {
-      Robot::from_strings(kUrdf, bad.srdf, {}, "robot.urdf", "bad.srdf");
-    } catch (const InvalidInput& error) {
-      message = error.what();
-    }
-    ASSERT_NE(message, "") << bad.what << " was accepted";
-    EXPECT_NE(message.find("bad.srdf"), std::string::npos) << bad.what << ": " << message;
-    EXPECT_TRUE(holds_all(message, bad.reported)) << bad.what << ": " << message;
-  }
+  test::expect_refused(refused(), "bad.srdf",
+                       [](const std::string& text) { Robot::from_strings(kUrdf, text, {}, "robot.urdf", "bad.srdf"); });
 }
 
 TEST(SrdfBadInput, EachIsSaidOnce) {
-  for (const BadCase& bad : warned()) {
-    const Robot robot = Robot::from_strings(kUrdf, bad.srdf, {}, "robot.urdf", "bad.srdf");
+  for (const test::BadCase& bad : warned()) {
+    const Robot robot = Robot::from_strings(kUrdf, bad.text, {}, "robot.urdf", "bad.srdf");
     int said = 0;
     for (const std::string& warning : robot.report().warnings)
-      if (warning.find("bad.srdf") != std::string::npos && holds_all(warning, bad.reported)) ++said;
+      if (warning.find("bad.srdf") != std::string::npos && test::holds_all(warning, bad.reported)) ++said;
     EXPECT_EQ(said, 1) << bad.what;
     if (said != 1)
       for (const std::string& warning : robot.report().warnings) ADD_FAILURE() << warning;

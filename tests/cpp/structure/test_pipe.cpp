@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "beam_frames.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/random.hpp"
 
@@ -13,16 +14,6 @@ namespace mmgrasp {
 namespace {
 
 using Eigen::Vector3d;
-
-/// P2 figure 3.4 by its matrix: six sections, seven nodes, a branch at the fourth (indices here from 0).
-Pipe figure_3_4() {
-  Pipe pipe;
-  pipe.nodes = {{0, 0, 0},        {0.2, 0, 0},      {0.2, 0.2, 0},   {0.2, 0.2, 0.15},
-                {0.4, 0.2, 0.15}, {0.2, 0.6, 0.15}, {0.2, 0.6, 0.25}};
-  pipe.sections = {{0, 1}, {1, 2}, {2, 3}, {3, 4}, {3, 5}, {5, 6}};
-  pipe.diameters.assign(6, 0.012);
-  return pipe;
-}
 
 void expect_refused(const Pipe& pipe, const std::string& field, const std::string& rule) {
   try {

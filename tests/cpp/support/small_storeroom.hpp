@@ -139,8 +139,9 @@ inline ReachDatabase small_database(const PartSupplyProblem& problem) {
 /// The small storeroom's regions on a grid of 8 cm, computed once for all tests of a suite.
 class SmallRegions : public ::testing::Test {
  protected:
-  static void SetUpTestSuite() {
-    problem_ = new PartSupplyProblem(small_storeroom());
+  static void SetUpTestSuite() { set_up(small_storeroom()); }
+  static void set_up(const PartSupplyProblem& problem) {
+    problem_ = new PartSupplyProblem(problem);
     problem_->options.grid.resolution = 0.08;
     database_ = new ReachDatabase(small_database(*problem_));
     grid_ = new BaseGrid(make_base_grid(*problem_, *database_));

@@ -14,15 +14,8 @@ namespace {
 
 /// A plan that has nothing but regions and stops; its other faults do not matter here.
 PlanToCheck bare_plan(const mmgrasp::test::Layout& layout, double uncertainty) {
-  PlanToCheck plan = good_plan();
-  plan.picks.clear();
-  plan.parts.clear();
-  plan.regions.clear();
-  plan.trays.clear();
-  plan.stops.clear();
-  plan.route = {{plan.start}};
-  plan.positioning_uncertainty = uncertainty;
-  plan.grid = {layout.grid.origin, layout.grid.resolution, layout.grid.nx, layout.grid.ny, layout.grid.headings};
+  const mmgrasp::BaseGrid& grid = layout.grid;
+  PlanToCheck plan = empty_plan(uncertainty, {grid.origin, grid.resolution, grid.nx, grid.ny, grid.headings});
   for (const mmgrasp::BaseRegion& region : layout.regions) {
     plan.regions.push_back({region.tray, region.cells});
     plan.trays.push_back(region.tray);

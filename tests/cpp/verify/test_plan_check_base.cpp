@@ -184,15 +184,7 @@ TEST(PlanCheckStops, LeastNumberAgreesWithBruteForceOnRectangles) {
   for (int trial = 0; trial < 60; ++trial) {
     mmgrasp::Rng rng(99, trial);
     const double radius = trial % 2 ? 0.07 : 0.012;
-    PlanToCheck plan = good_plan();
-    plan.picks.clear();
-    plan.parts.clear();
-    plan.regions.clear();
-    plan.trays.clear();
-    plan.stops.clear();
-    plan.route = {{plan.start}};
-    plan.positioning_uncertainty = radius;
-    plan.grid = {Eigen::Vector2d(-1, 2), resolution, 14, 12, {0.0}};
+    PlanToCheck plan = empty_plan(radius, {Eigen::Vector2d(-1, 2), resolution, 14, 12, {0.0}});
     std::vector<Rectangle> rectangles;
     for (int tray = 0; tray < 5; ++tray) {
       const int w = 3 + static_cast<int>(rng.index(5)), h = 3 + static_cast<int>(rng.index(5));
@@ -214,15 +206,7 @@ TEST(PlanCheckStops, LeastNumberAgreesWithBruteForceOnRectangles) {
 
 /// Twenty trays on a large floor, their regions full of holes; the first eight trays are wanted.
 PlanToCheck ragged_plan(double uncertainty, double share) {
-  PlanToCheck plan = good_plan();
-  plan.picks.clear();
-  plan.parts.clear();
-  plan.regions.clear();
-  plan.trays.clear();
-  plan.stops.clear();
-  plan.route = {{plan.start}};
-  plan.positioning_uncertainty = uncertainty;
-  plan.grid = {Eigen::Vector2d(-1, 2), 0.05, 100, 100, {0.0, 1.0, 2.0, 3.0}};
+  PlanToCheck plan = empty_plan(uncertainty, {Eigen::Vector2d(-1, 2), 0.05, 100, 100, {0.0, 1.0, 2.0, 3.0}});
   mmgrasp::Rng rng(7, 0);
   for (int tray = 0; tray < 20; ++tray) {
     const std::string name(1, static_cast<char>('A' + tray));

@@ -198,6 +198,20 @@ inline PlanToCheck good_plan(const Variation& how = {}) {
   return plan;
 }
 
+/// The good plan's robot in an empty room, with a grid and nothing on it: for regions and stops alone.
+inline PlanToCheck empty_plan(double uncertainty, const CheckedGrid& grid) {
+  PlanToCheck plan = good_plan();
+  plan.picks.clear();
+  plan.parts.clear();
+  plan.regions.clear();
+  plan.trays.clear();
+  plan.stops.clear();
+  plan.route = {{plan.start}};
+  plan.positioning_uncertainty = uncertainty;
+  plan.grid = grid;
+  return plan;
+}
+
 inline PlanCheckOptions quick() {
   PlanCheckOptions options;
   options.samples = 60;

@@ -21,6 +21,7 @@ MMGRASP_EXPORT EdgeResult check_edge(CollisionChecker& checker, const Eigen::Vec
                                      const EdgeOptions& options);
 MMGRASP_EXPORT Eigen::VectorXd motion_bounds(const CollisionChecker& checker);
 
+/// Which collisions a CollisionChecker looks for, and how much room it keeps around the robot's links.
 struct MMGRASP_EXPORT CheckerOptions {
   double padding = 0;       ///< Links are padded by at least this, whatever World::padding() says [m]; >= 0.
   bool check_self = true;   ///< Check the robot and what is attached to it against itself.
@@ -41,6 +42,7 @@ struct MMGRASP_EXPORT Contact {
 /// "'hand' touches 'table'", or, by padding, "'hand' comes closer to 'table' than their padding".
 MMGRASP_EXPORT std::string describe(const Contact& contact);
 
+/// How far apart two bodies are at a configuration, and where they come closest.
 struct MMGRASP_EXPORT DistanceResult {
   double value = std::numeric_limits<double>::infinity();  ///< [m]; negative: depth.
   std::string a, b;                                        ///< The closest pair.

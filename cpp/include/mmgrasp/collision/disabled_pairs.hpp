@@ -6,6 +6,8 @@
 
 namespace mmgrasp {
 
+/// How many random configurations tell which pairs of links touch always or never (compute_disabled_pairs()): MoveIt's
+/// setup assistant finds them in the same way.
 struct MMGRASP_EXPORT DisabledPairsOptions {
   int samples = 10000;            ///< Random full configurations; > 0
   double always_fraction = 0.95;  ///< A pair in collision at least this often is called "always"; in (0, 1].

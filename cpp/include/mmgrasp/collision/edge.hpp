@@ -8,6 +8,8 @@
 
 namespace mmgrasp {
 
+/// How check_edge() looks at the motion between two configurations: in steps, and how long these may be, or proven free
+/// as a whole.
 struct MMGRASP_EXPORT EdgeOptions {
   double joint_step = 0.02;  ///< No joint moves more than this between two checks [rad or m]; > 0.
   /// No point of the robot (or of what is attached to it) moves more than this between two checks [m]; > 0, infinite:
@@ -23,6 +25,7 @@ struct MMGRASP_EXPORT EdgeOptions {
   void check() const;
 };
 
+/// Whether an edge is free; if not, how far along it the first contact is and what touches there.
 struct MMGRASP_EXPORT EdgeResult {
   bool free = false;
   double fraction = 1;             ///< Where along the edge the first refused check was, in [0, 1]; 1 when free.

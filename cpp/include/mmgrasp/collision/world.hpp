@@ -64,9 +64,9 @@ class MMGRASP_EXPORT World {
   void move(const std::string& name, const Pose& T_world_object);
   /// Takes an object, attached or not, or a field out of the world; see forget().
   void remove(const std::string& name);
-  /// From the scene to a link. Empty touch_links: `link`, every link below it and, when `link` lies in an SRDF end
-  /// effector's group or below its parent link, all links of that group (resolved by the checker, which also refuses
-  /// unknown links). Links that are rigidly joined to `link` are never checked against the object.
+  /// Takes an object from the scene to a link. Empty touch_links: `link`, every link below it and, when `link` lies in
+  /// an SRDF end effector's group or below its parent link, all links of that group (resolved by the checker, which
+  /// also refuses unknown links). Links that are rigidly joined to `link` are never checked against the object.
   void attach(const std::string& name, const std::string& link, const Pose& T_link_object,
               std::set<std::string> touch_links = {});
   void detach(const std::string& name, const Pose& T_world_object);  ///< Back into the scene.
@@ -79,7 +79,7 @@ class MMGRASP_EXPORT World {
   void allow(const std::string& a, const std::string& b);
   void disallow(const std::string& a, const std::string& b);  ///< Takes a pair back; throws unless it is there.
   using NamePair = std::pair<std::string, std::string>;
-  const std::set<NamePair>& allowed() const { return allowed_; }  ///< As given; the smaller name first.
+  const std::set<NamePair>& allowed() const { return allowed_; }  ///< Pairs given to allow(), the smaller name first.
   /// Replaces the padding of all bodies. Names are checked as those of allow().
   void set_padding(Padding padding);
   const Padding& padding() const { return padding_; }

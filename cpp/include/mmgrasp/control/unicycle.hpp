@@ -18,7 +18,4 @@ MMGRASP_EXPORT Eigen::Vector3d drive_arc(const Eigen::Vector3d& pose, const Eige
 /// full turn.
 MMGRASP_EXPORT Eigen::Vector3d arc_velocity(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double time);
 
-/// The same angle in (-pi, pi].
-MMGRASP_EXPORT double wrapped_angle(double angle);
-
 }  // namespace mmgrasp

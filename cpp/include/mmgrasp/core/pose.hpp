@@ -8,9 +8,13 @@
 
 namespace mmgrasp {
 
+/// A rigid transform: rotation and translation [m]. T_a_b is the pose of frame b in frame a: p_a = T_a_b * p_b.
 using Pose = Eigen::Isometry3d;
+/// One pose after another, e.g. a Cartesian path.
 using Poses = std::vector<Pose>;
+/// A twist or a pose's error: three linear entries [m], then three angular ones [rad].
 using Vector6d = Eigen::Matrix<double, 6, 1>;
+/// A Jacobian: rows as in Vector6d, one column a joint.
 using Matrix6Xd = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
 /// URDF's convention: R = Rz(yaw) * Ry(pitch) * Rx(roll) [m, rad].

@@ -10,6 +10,7 @@
 
 namespace mmgrasp {
 
+/// The simple solids that a segment of a mechanical part is described by.
 enum class PrimitiveKind { cylinder, box, cone, sphere };
 
 /// "cylinder", "box", "cone", "sphere".

@@ -20,7 +20,7 @@ struct MMGRASP_EXPORT Ray {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();      ///< [m]
   Eigen::Vector3d direction = Eigen::Vector3d::UnitX();  ///< Not zero; need not be a unit vector.
   double nearest = 0;  ///< A ray that starts on the surface meets it at about 0; start later to leave that out.
-  double farthest = std::numeric_limits<double>::infinity();  ///< With nearest = -infinity the whole line.
+  double farthest = std::numeric_limits<double>::infinity();  ///< Infinite, and nearest = -infinity: the line.
 };
 
 /// Where a ray meets a mesh.

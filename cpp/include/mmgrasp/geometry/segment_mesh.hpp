@@ -11,6 +11,8 @@
 
 namespace mmgrasp {
 
+/// How segment_mesh() divides a surface: into how many classes of thickness, along which creases, and which pieces it
+/// joins again.
 struct MMGRASP_EXPORT MeshSegmentationOptions {
   ShapeDiameterOptions diameter;
   int max_clusters = 8;        ///< Most Gaussians over the logarithms of the diameters; in [1, 32].
@@ -34,6 +36,7 @@ struct MMGRASP_EXPORT ScrewThread {
   std::vector<int> faces;                    ///< Ascending.
 };
 
+/// A piece of a mesh's surface that bounds one simple body of the part: its shaft, its flange, its head.
 struct MMGRASP_EXPORT MeshSegment {
   std::vector<int> faces;  ///< Indices of the mesh's faces, ascending.
   double area = 0;         ///< [m^2]
@@ -41,6 +44,7 @@ struct MMGRASP_EXPORT MeshSegment {
   bool threaded = false;   ///< More than a tenth of its area belongs to a screw thread: not to be grasped there.
 };
 
+/// A mesh divided into segments, with the thickness measured at each face and the screw threads found.
 struct MMGRASP_EXPORT MeshSegmentation {
   Outcome outcome = Outcome::solved;  ///< Solved, or stopped; then the rest is empty.
   std::vector<int> labels;            ///< Segment of each face of the mesh.

@@ -12,24 +12,30 @@
 
 namespace mmgrasp {
 
+/// A solid box centred in its frame, edges along the axes.
 struct Box {
-  Eigen::Vector3d size = Eigen::Vector3d::Ones();
-};  ///< Full lengths [m], centred.
+  Eigen::Vector3d size = Eigen::Vector3d::Ones();  ///< Full lengths along x, y and z [m].
+};
+/// A solid sphere around its frame's origin.
 struct Sphere {
-  double radius = 1;
-};  ///< [m]
+  double radius = 1;  ///< [m]
+};
+/// A solid cylinder along z, centred in its frame.
 struct Cylinder {
-  double radius = 1;
-  double length = 1;
-};  ///< Along z, centred [m].
+  double radius = 1;  ///< [m]
+  double length = 1;  ///< [m]
+};
+/// A solid cylinder along z with a half sphere on either end, centred in its frame.
 struct Capsule {
-  double radius = 1;
-  double length = 1;
-};  ///< Along z, centred; `length` without the caps [m].
+  double radius = 1;  ///< [m]
+  double length = 1;  ///< Length without the half spheres [m].
+};
+/// A half-space, such as level ground: solid where normal . x <= offset.
 struct Plane {
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
-  double offset = 0;
-};  ///< Solid where normal . x <= offset.
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< Unit, out of the solid.
+  double offset = 0;                                  ///< [m]
+};
+/// Triangles [m]: a solid where they are closed, else a surface (TriangleMesh::closed).
 struct MeshShape {
   std::shared_ptr<const TriangleMesh> mesh;
 };
@@ -39,6 +45,7 @@ struct Voxels {
   double resolution = 0.01;
 };
 
+/// What a rigid body may be made of; each is placed by a pose beside it (LinkShape, World).
 using Shape = std::variant<Box, Sphere, Cylinder, Capsule, Plane, MeshShape, Voxels>;
 
 /// Throws InvalidInput naming `field` on a zero, negative, infinite or NaN dimension.

@@ -8,6 +8,7 @@
 
 namespace mmgrasp {
 
+/// The fingers that jaw_grasps() and centric_grasps() put at a segment, and how densely they try approaches.
 struct MMGRASP_EXPORT AssemblyGraspOptions {
   double facet_angle = 0.1;      ///< Faces of one facet bend no more than this from its largest one [rad]; in (0, 0.5].
   double parallel_angle = 0.05;  ///< Facets held between jaws are off parallel by no more [rad]; in (0, 0.5].

@@ -22,6 +22,7 @@ struct MMGRASP_EXPORT ContactPatch {
   double inliers = 0;   ///< Share of the hits that lie in the plane.
 };
 
+/// How many rays a pad casts, and how much of what they meet must be plane for a stable contact (P3 4.6.2).
 struct MMGRASP_EXPORT ContactPatchOptions {
   int rays = 5;                    ///< Along each side of a pad: P3's 25 are 5 x 5; >= 2.
   double min_hits = 0.5;           ///< Share of the rays that must meet the surface, in (0, 1].

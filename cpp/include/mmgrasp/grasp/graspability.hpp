@@ -14,6 +14,7 @@
 
 namespace mmgrasp {
 
+/// Hand poses that evaluate_graspability() tries over a height map, and what a grasp needs to be returned.
 struct MMGRASP_EXPORT GraspabilityOptions {
   double margin = 0.001;     ///< Kept free around the hand [m]; >= 0.
   int orientations = 16;     ///< Closing directions over half a turn; > 0.
@@ -38,6 +39,7 @@ struct MMGRASP_EXPORT GraspabilityCounts {
   std::size_t near_better = 0;  ///< A better one lies beside it, or max_grasps better ones exist.
 };
 
+/// Grasps found in a height map, and what became of the other places that were checked.
 struct MMGRASP_EXPORT Graspability {
   std::vector<Grasp> grasps;  ///< Best first; T_object_hand is the pose in the world.
   GraspabilityCounts counts;

@@ -22,24 +22,27 @@ struct MMGRASP_EXPORT RestingPose {
 /// overlap count twice. Throws InvalidInput for an empty or flat body or a plane.
 MMGRASP_EXPORT std::vector<RestingPose> resting_poses(const std::vector<LinkShape>& part);
 
+/// How many parts random_placement() puts into a tray, whether on top of one another, and how long it looks for room.
 struct MMGRASP_EXPORT PlacementOptions {
   int count = 12;             ///< Parts wanted; >= 0. P1's fill of 75 % of a tray for twelve is nine.
-  int attempts = 100;         ///< Random places tried for each part; > 0.
+  int draws = 100;            ///< Random places tried for each part; > 0.
   bool stack = true;          ///< A part that finds no place on the floor may lie on others, no higher than the walls.
   double clearance = 0.0005;  ///< Left under parts on the floor and, at most, under those on others [m]; > 0.
   unsigned seed = 1;          ///< Same seed, same places.
   void check() const;
 };
 
+/// Where a part lies in its tray, and which of its resting_poses() it took.
 struct MMGRASP_EXPORT PlacedPart {
   Pose T_tray_part = Pose::Identity();
   int resting_pose = 0;
   bool on_floor = true;  ///< False: it lies on others.
 };
 
+/// The parts that found room in a tray, and how many did not.
 struct MMGRASP_EXPORT RandomPlacement {
   std::vector<PlacedPart> parts;
-  int not_placed = 0;  ///< For which no place was found.
+  int not_placed = 0;  ///< Parts for which no place was found.
 };
 
 /// Alike parts lying in a tray at random (P1 3.5.2, 3.7.2), without physics: one after another each takes a resting

@@ -9,6 +9,7 @@
 
 namespace mmgrasp {
 
+/// How densely sample_grasps() covers a body with grasps, and which pairs of contacts it takes for antipodal.
 struct MMGRASP_EXPORT GraspSamplerOptions {
   int approaches = 8;  ///< Approach directions around each closing axis; > 0.
   int positions = 3;   ///< Pad positions along each free direction of a box or cylinder (odd: the middle first); > 0.

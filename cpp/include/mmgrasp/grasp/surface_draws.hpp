@@ -12,8 +12,8 @@ namespace mmgrasp {
 /// How surfaces are drawn from a map: mean + sigma g with one smooth random field g of N(0, 1) a draw.
 struct MMGRASP_EXPORT SurfaceDrawOptions {
   int draws = 200;  ///< Surfaces; > 0.
-  /// Over which g changes: its correlation is exp(-r^2 / (2 length^2)). Assumed, since the map keeps no covariances:
-  /// the longer, the more a patch moves as a whole [m]; > 0.
+  /// Length over which g changes: at a distance r its correlation is exp(-r^2 / (2 length^2)). Assumed, since the map
+  /// keeps no covariances: the longer, the more a patch moves as a whole [m]; > 0.
   double correlation_length = 0.02;
   unsigned seed = 1;  ///< Same seed, same surfaces for every grasp: what ranks them is not the draw.
   void check() const;

@@ -21,6 +21,7 @@ namespace mmgrasp {
 
 class World;
 
+/// What synthesize_grasps() may grasp, how much room the hand keeps, and how many grasps are tried for it.
 struct MMGRASP_EXPORT SynthesisOptions {
   int samples = 200;            ///< Grasps evaluated: two thirds spread over the object, the rest around the best; > 0.
   int refined = 8;              ///< Grasps of the first search around which the second goes on; > 0.
@@ -70,6 +71,7 @@ struct MMGRASP_EXPORT GraspRating {
   Eigen::VectorXd q;                     ///< The arm's configuration before closing; empty without an arm.
 };
 
+/// Grasps found in a map of uncertain surfaces, how each was rated, and what became of all others that were tried.
 struct MMGRASP_EXPORT GraspSynthesis {
   Outcome outcome = Outcome::not_found;  ///< solved, not_found or stopped.
   std::vector<Grasp> grasps;             ///< Most probable first; T_object_hand is the pose in the world.

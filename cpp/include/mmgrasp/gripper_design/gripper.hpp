@@ -10,7 +10,9 @@
 
 namespace mmgrasp {
 
-/// A gripper with straight fingers on a drive: two parallel jaws, or three fingers that move towards one axis
+struct Hand;
+
+/// A design: a gripper with straight fingers on a drive: two parallel jaws, or three fingers that move towards one axis
 /// (P1 5.2.1, figure 5.6). Its opening goes from `min_opening` to `max_opening`, the difference being the drive's
 /// stroke.
 ///
@@ -21,6 +23,8 @@ namespace mmgrasp {
 ///     gripper.max_opening = 0.022;
 ///     gripper.finger_length = 0.030;
 ///     gripper.to_urdf("grippers/centric_22");       // gripper.urdf, gripper.srdf, finger.stl
+///
+/// Planners, samplers and masks know no designs but hands: hand() gives the Hand that this gripper is.
 ///
 /// Frames: the base frame lies on the mounting face with z towards the tips; the first finger moves along x. The tool
 /// frame lies on z, half a pad before the tips, with the base frame's axes.
@@ -46,6 +50,10 @@ struct MMGRASP_EXPORT Gripper {
   double pad_length() const;
   /// Radius of the palm, a cylinder that covers the fingers while they are open [m].
   double palm_radius() const;
+  /// What planners need to know of it: tool frame, openings, driven joint and body, the names those of files(). A
+  /// gripper that is mounted under a prefix is read from its robot instead (Hand::from_robot). Throws InvalidInput for
+  /// three fingers: a Hand has pads that stand opposite each other.
+  Hand hand() const;
   /// One finger, to print: closed, convex, standing on the palm at z = 0, its pad in the plane x = 0, facing -x [m].
   std::shared_ptr<const TriangleMesh> finger_mesh() const;
   /// URDF and SRDF as texts by file name ("gripper.urdf", "gripper.srdf"), and the finger as a binary STL in metres

@@ -22,6 +22,7 @@ struct MMGRASP_EXPORT GripperActuator {
   double cost = 1;                                               ///< Cost of a gripper with this drive, > 0.
 };
 
+/// Which fingers can be made, what a change of grippers costs, and how long minimal_grippers() searches.
 struct MMGRASP_EXPORT MinimalGrippersOptions {
   double shortest_finger = 0.01;  ///< No finger is shorter [m], > 0.
   double longest_finger = 0.5;    ///< No finger is longer [m], >= shortest_finger.
@@ -39,6 +40,7 @@ struct MMGRASP_EXPORT MinimalGrippersOptions {
   void check() const;
 };
 
+/// The grippers chosen for an assembly, which part each of them takes, and what is proven about the choice.
 struct MMGRASP_EXPORT MinimalGrippersResult {
   /// `solved`: proven, in cost and changes (on a grid: of the grid's grippers); `approximate`: a set that takes every
   /// part, `lower_bound` and `changes_bound` say what is proven; `infeasible`: see `explanations`; `stopped`.

@@ -35,6 +35,7 @@ struct MMGRASP_EXPORT PlacedShape {
   Pose T_world_shape = Pose::Identity();
 };
 
+/// How a rendered depth image differs from a perfect one: its noise, and pixels without a measurement.
 struct MMGRASP_EXPORT RenderOptions {
   double noise = 0;    ///< Standard deviation of the depth at 1 m; it grows with the square of the distance [m]; >= 0.
   double missing = 0;  ///< Share of pixels without a measurement, in [0, 1].

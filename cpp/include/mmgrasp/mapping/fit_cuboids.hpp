@@ -16,6 +16,7 @@ struct MMGRASP_EXPORT KnownTray {
   double wall = 0.005;                                    ///< Thickness of the walls [m], >= 0.
 };
 
+/// What fit_cuboids() takes for the supporting plane, for one part, and for noise.
 struct MMGRASP_EXPORT CuboidFitOptions {
   double plane_tolerance = 0.008;  ///< Points no farther than this from the supporting plane belong to it [m]; > 0.
   double wall_margin = 0.006;      ///< Points no farther than this from a tray's wall are left out [m]; >= 0.
@@ -35,10 +36,11 @@ struct MMGRASP_EXPORT CuboidFitOptions {
 struct MMGRASP_EXPORT FittedCuboid {
   Pose T_world_box = Pose::Identity();             ///< Its centre; z along the plane's normal, x along the longer side.
   Eigen::Vector3d size = Eigen::Vector3d::Zero();  ///< [m]
-  int points = 0;                                  ///< That it was fitted to.
+  int points = 0;                                  ///< Number that it was fitted to.
   double fill = 0;  ///< Share of the top rectangle's area near which a point of the top was seen: how box-like it is.
 };
 
+/// Box-shaped parts found in a cloud, the plane they stand on, and to which of these each point belongs.
 struct MMGRASP_EXPORT CuboidFit {
   bool plane_found = false;
   Eigen::Vector3d plane_normal = Eigen::Vector3d::UnitZ();  ///< Unit, upwards.

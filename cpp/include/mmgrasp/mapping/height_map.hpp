@@ -30,6 +30,7 @@ struct MMGRASP_EXPORT HeightMap {
   }
 };
 
+/// How finely make_height_map() resamples a depth image, and which of its holes are filled.
 struct MMGRASP_EXPORT HeightMapOptions {
   double resolution = 0.002;  ///< Edge of a cell [m]; > 0.
   int hole_radius = 2;  ///< Holes up to this many pixels from a measurement are filled with the nearest one; >= 0.

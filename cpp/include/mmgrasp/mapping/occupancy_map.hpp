@@ -14,6 +14,7 @@
 
 namespace mmgrasp {
 
+/// Cells of an occupancy map, and how much one ray says about those it ends in and those it passes.
 struct MMGRASP_EXPORT OccupancyOptions {
   double resolution = 0.02;  ///< Edge of the smallest cell [m]; in [1e-4, 1e3].
   double hit = 0.7;          ///< Probability of being occupied that a cell gets from one depth in it; in (0.5, 1).

@@ -28,6 +28,7 @@ enum class SdfDistance {
   along_ray,  ///< As in P3 (4.12): along the ray, which is too far on slanted surfaces.
 };
 
+/// Resolution of a ProbabilisticSdf, which depths it takes in, and how they become distances of voxels.
 struct MMGRASP_EXPORT SdfOptions {
   double voxel = 0.002;       ///< Distance of neighbouring voxels [m]; > 0.
   double truncation = 0.010;  ///< Voxels farther from a depth than this are not updated by it [m]; >= 3 voxels.

@@ -10,6 +10,7 @@
 
 namespace mmgrasp {
 
+/// What segment_objects() takes for the supporting plane, for the border between two objects, and for noise.
 struct MMGRASP_EXPORT ObjectSegmentationOptions {
   double leaf = 0.004;             ///< Cell to which points are thinned [m]; in [1e-5, 1], above the points' spacing.
   double plane_tolerance = 0.007;  ///< Points no farther than this from the supporting plane belong to it [m]; > 0.
@@ -33,11 +34,13 @@ struct MMGRASP_EXPORT SupportingPlane {
   double offset = 0;                                  ///< [m]
 };
 
+/// One of the objects on the plane: which points were measured on it.
 struct MMGRASP_EXPORT SegmentedObject {
   std::vector<int> indices;    ///< Indices of its points, ascending.
   Eigen::AlignedBox3d bounds;  ///< Box around its points, along the axes of their frame [m].
 };
 
+/// Measured points divided into the plane, the objects that stand on it, and the rest.
 struct MMGRASP_EXPORT ObjectSegmentation {
   std::optional<SupportingPlane> plane;  ///< Found or given. Without a plane there are no objects.
   std::vector<int> plane_inliers;        ///< Indices of the points that belong to the plane, ascending.

@@ -23,6 +23,7 @@ struct MMGRASP_EXPORT DerivativeFreeProblem {
   int constraint_count = 0;
 };
 
+/// When a search by values alone has converged, which violations it tolerates, and its budget.
 struct MMGRASP_EXPORT DerivativeFreeOptions {
   /// Converged when steps fall below this share of a variable's range (of 1 where it is unbounded); in (0, 1).
   double tolerance = 1e-6;
@@ -33,6 +34,7 @@ struct MMGRASP_EXPORT DerivativeFreeOptions {
   void check() const;                  ///< Throws InvalidInput naming field, value and rule.
 };
 
+/// The best point that a search by values alone saw, and why it ended.
 struct MMGRASP_EXPORT DerivativeFreeResult {
   /// solved: converged, constraints kept (a global solver proves nothing beyond that). timeout: the budget or the time
   /// limit ended it. stopped. not_found: converged where constraints are broken. approximate: rounding ended it early.

@@ -12,6 +12,7 @@
 
 namespace mmgrasp {
 
+/// When an NlpSolver takes a point for optimal and feasible, its budget, and how Ipopt's barrier is lowered.
 struct MMGRASP_EXPORT NlpOptions {
   double tolerance = 1e-7;             ///< Relative optimality, in (0, 1).
   double constraint_tolerance = 1e-8;  ///< Largest violation of a solved problem; > 0.
@@ -23,13 +24,14 @@ struct MMGRASP_EXPORT NlpOptions {
   void check() const;
 };
 
+/// Where an NlpSolver ended: the point, its objective, and by how much it breaks constraints.
 struct MMGRASP_EXPORT NlpResult {
   /// solved: locally optimal and every constraint kept. approximate: every constraint kept, optimality not shown.
   /// not_found: the solver ended at a point that breaks constraints. timeout: iterations or clock. stopped.
   Outcome outcome = Outcome::not_found;
   Eigen::VectorXd x;       ///< The answer, or the best iterate: the least violated, then the cheapest. Always finite.
-  double objective = 0;    ///< At x.
-  NlpViolations violated;  ///< At x.
+  double objective = 0;    ///< Its value at x.
+  NlpViolations violated;  ///< Constraints that x breaks.
   int iterations = 0;      ///< Iterations of Ipopt, or evaluations of SLSQP.
   double seconds = 0;
   std::string message;  ///< How the solver itself put it.

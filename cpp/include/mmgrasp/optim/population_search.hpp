@@ -49,6 +49,7 @@ struct MMGRASP_EXPORT PopulationProblem {
   void check() const;
 };
 
+/// Size and budget of a population search, then the parameters of each algorithm; ns, nb, ... are P2's names for them.
 struct MMGRASP_EXPORT PopulationOptions {
   int population = 34;         ///< Points a round (P2's ns); >= 4.
   int max_evaluations = 1530;  ///< Budget (P2's ns times iterations); > 0.
@@ -75,11 +76,12 @@ struct MMGRASP_EXPORT PopulationOptions {
   void check() const;
 };
 
+/// The best point that a population search saw, and how the best objective fell while it ran.
 struct MMGRASP_EXPORT PopulationResult {
   /// solved: the target was met. timeout: the budget ended it, and says nothing about how good x is. stopped.
   Outcome outcome = Outcome::timeout;
   Eigen::VectorXd x;       ///< The best point seen.
-  ConstrainedValue value;  ///< There.
+  ConstrainedValue value;  ///< What it is worth.
   int evaluations = 0;
   std::vector<double> history;  ///< Best objective after each evaluation; infinite while nothing was feasible.
 };

@@ -22,6 +22,7 @@ struct MMGRASP_EXPORT SetCoverProblem {
   void check() const;
 };
 
+/// The sets chosen, with a proven bound on what any cover costs.
 struct MMGRASP_EXPORT SetCoverResult {
   /// `solved` only with a proof of optimality; `approximate` with a cover but no proof; `stopped` by the monitor, with
   /// a cover and the bound known by then.

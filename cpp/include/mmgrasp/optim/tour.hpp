@@ -8,6 +8,7 @@
 
 namespace mmgrasp {
 
+/// The order in which stops are visited, and how short any tour could be at best.
 struct MMGRASP_EXPORT TourResult {
   /// infeasible: proven, up to 15 stops; not_found: the local search met no tour beyond.
   Outcome outcome = Outcome::not_found;

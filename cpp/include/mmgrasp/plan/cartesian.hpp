@@ -9,18 +9,20 @@
 
 namespace mmgrasp {
 
+/// Steps along the lines of a Cartesian path, and how many configurations of its first pose are tried.
 struct MMGRASP_EXPORT CartesianOptions {
-  StraightLineOptions line;  ///< For each line; a jump of the joints ends a branch.
+  StraightLineOptions line;  ///< Settings of each line; a jump of the joints ends a branch.
   int max_branches = 64;     ///< Configurations of the first pose tried at most; > 0.
   void check() const;
 };
 
+/// Joint path along all lines, or how far the best branch came and what ended it there.
 struct MMGRASP_EXPORT CartesianResult {
   Outcome outcome = Outcome::not_found;
   std::optional<JointPath> path;  ///< Begins at the first pose, ends at the last; set if and only if solved.
   std::vector<int> corners;       ///< Waypoint at which each pose is reached.
   double fraction = 0;            ///< How far the branch that came farthest got, in [0, 1]; every line counts the same.
-  Rejection cause = Rejection::none;  ///< Why that branch ended there: reach (also: a jump), limits, ...
+  Rejection cause = Rejection::none;  ///< Why that branch ended there: unreachable (also: a jump), limits, ...
   std::optional<Contact> contact;     ///< What touches there, when something does.
   std::string beyond_limits;          ///< With invalid_start: what is wrong with `near`, as in MotionResult.
   int branches = 0;                   ///< Allowed configurations of the first pose.

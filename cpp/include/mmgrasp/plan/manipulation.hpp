@@ -57,6 +57,8 @@ struct MMGRASP_EXPORT PrmStarMgOptions {
   void check() const;
 };
 
+/// The planner that plan_manipulation() runs, its budget, and what all planners share; `prm` and `rrt` belong to one
+/// each.
 struct MMGRASP_EXPORT ManipulationOptions {
   std::string planner = "prm_star_mg";  ///< A name of manipulation_planner_names().
   int ik_solutions = 8;                 ///< Arm postures of each grasp at each end at most, in all turns; > 0.
@@ -101,6 +103,7 @@ struct MMGRASP_EXPORT StageReport {
   double cost = 0;          ///< Cost after its last improvement.
 };
 
+/// Time and work that plan_manipulation() spent, and bounds on the cost that its stages proved.
 struct MMGRASP_EXPORT ManipulationStats {
   double ik_seconds = 0, roadmap_seconds = 0, search_seconds = 0;
   /// Cost of prm_star_mg's best path over the roadmap before shortening; 0: none costs less than the first path.
@@ -123,6 +126,7 @@ struct MMGRASP_EXPORT ManipulationStats {
   std::vector<StageReport> stages;         ///< Those that improved the path, in the order of their first improvement.
 };
 
+/// The cheapest manipulation path found, its grasp, how good it is proven to be, and what became of each grasp.
 struct MMGRASP_EXPORT ManipulationResult {
   Outcome outcome = Outcome::timeout;
   int grasp_index = -1;

@@ -23,6 +23,7 @@ struct MMGRASP_EXPORT OrientationConstraint {
   void check() const;
 };
 
+/// The planner that plan_motion() runs, its budget, how finely it checks edges, and what the path must keep to.
 struct MMGRASP_EXPORT MotionOptions {
   std::string planner = "rrt_connect";  ///< A name of planner_names().
   double time_limit = 5.0;              ///< Wall-clock cap [s]; > 0.
@@ -51,12 +52,14 @@ struct MMGRASP_EXPORT MotionOptions {
   void check() const;
 };
 
+/// What a motion cost to plan, and how long its path was before it was shortened.
 struct MMGRASP_EXPORT MotionStats {
   double seconds = 0;
   std::size_t collision_queries = 0;
   double length_before_shortening = 0;
 };
 
+/// A collision-free path to one of the goals, or why there is none.
 struct MMGRASP_EXPORT MotionResult {
   Outcome outcome = Outcome::timeout;
   /// Set if and only if solved; re-checked at a 64th of the edge steps, at an eighth when the planner is one that keeps

@@ -11,6 +11,7 @@
 
 namespace mmgrasp {
 
+/// How many configurations a roadmap draws, and which of them it joins.
 struct MMGRASP_EXPORT RoadmapOptions {
   int vertices = 5000;  ///< Configurations drawn; in [2, 10 million].
   /// > 0: vertices nearer than gamma (log n / n)^(1/d) are joined (P2 4.3.2.1, which takes 4) [rad or m]. 0: each

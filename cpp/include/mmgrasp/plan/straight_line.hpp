@@ -11,6 +11,7 @@
 
 namespace mmgrasp {
 
+/// Steps in which plan_straight_line() follows its line, and from where on a step is a jump of the joints.
 struct MMGRASP_EXPORT StraightLineOptions {
   double position_step = 0.005;  ///< Largest tool translation between two waypoints [m]; > 0.
   double rotation_step = 0.02;   ///< Largest tool rotation between two waypoints [rad]; > 0.
@@ -20,6 +21,7 @@ struct MMGRASP_EXPORT StraightLineOptions {
   void check() const;
 };
 
+/// Joint path along a straight line of the tool, or how far the arm came and what ended it there.
 struct MMGRASP_EXPORT StraightLineResult {
   Outcome outcome = Outcome::not_found;
   std::optional<JointPath> path;  ///< From q_start to T_world_to; set if and only if solved.

@@ -11,6 +11,7 @@
 
 namespace mmgrasp {
 
+/// How far a timed motion may cut the corners of its path, its jerk, and how densely it is sampled.
 struct MMGRASP_EXPORT TimingOptions {
   /// Corners are blended within this joint distance [rad]; >= 0; 0 stops at every corner.
   double max_deviation = 0.01;

@@ -12,6 +12,7 @@
 
 namespace mmgrasp {
 
+/// Base poses that the database votes for, and how many of the best are checked exactly and improved.
 struct MMGRASP_EXPORT BasePlacementOptions {
   double step = 0.05;   ///< Grid of base positions [m]; > 0.
   int headings = 24;    ///< Headings of the base tried, evenly over the circle; > 0.
@@ -40,6 +41,7 @@ MMGRASP_EXPORT std::vector<BaseReach> base_poses_for(const ReachDatabase& databa
                                                      const CollisionChecker* checker = nullptr,
                                                      const Monitor& monitor = {});
 
+/// One base pose, and the configurations in which the arm reaches the targets from there.
 struct MMGRASP_EXPORT BasePlacement {
   Eigen::Vector3d base_pose = Eigen::Vector3d::Zero();
   std::vector<Eigen::VectorXd> configurations;  ///< One per target; empty where it is not reached.

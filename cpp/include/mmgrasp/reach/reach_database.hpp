@@ -14,6 +14,7 @@
 
 namespace mmgrasp {
 
+/// How many configurations a ReachDatabase samples, into which cells it sorts them, and which it keeps.
 struct MMGRASP_EXPORT ReachOptions {
   std::int64_t samples = 2'000'000;  ///< Arm configurations drawn; > 0.
   double position_cell = 0.10;       ///< Edge of a position cell [m]; > 0.

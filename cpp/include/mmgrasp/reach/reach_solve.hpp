@@ -12,6 +12,7 @@
 
 namespace mmgrasp {
 
+/// How many solutions solve_reach() returns, and from how many stored configurations it looks for them.
 struct MMGRASP_EXPORT ReachSolveOptions {
   int count = 8;          ///< Solutions asked for; > 0.
   int candidates = 64;    ///< Stored configurations that descents start from; > 0.

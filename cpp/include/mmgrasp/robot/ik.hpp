@@ -14,8 +14,10 @@
 namespace mmgrasp {
 
 class IkObjective;  // robot/ik_objective.hpp
+/// What a redundant arm prefers among the configurations of a pose; costs are summed.
 using IkObjectives = std::vector<std::shared_ptr<const IkObjective>>;
 
+/// Tolerances and budget of inverse kinematics, and what a redundant arm uses its freedom for.
 struct MMGRASP_EXPORT IkOptions {
   double position_tolerance = 1e-5;  ///< [m], > 0
   double rotation_tolerance = 1e-4;  ///< [rad], > 0
@@ -31,12 +33,13 @@ struct MMGRASP_EXPORT IkOptions {
   void check() const;
 };
 
+/// A configuration whose tip stands at the pose, or how near the search came and why others were rejected.
 struct MMGRASP_EXPORT IkResult {
   /// infeasible only when the pose is farther away than all links stretched; not_found, also when every branch of a
   /// closed form was refused.
   Outcome outcome = Outcome::not_found;
   Eigen::VectorXd q;          ///< Set if and only if solved; inside limits, verified by forward kinematics.
-  double position_error = 0;  ///< [m] of q, or of the best attempt.
+  double position_error = 0;  ///< [m] of q, or of the best descent.
   double rotation_error = 0;  ///< [rad]
   Rejections rejections;      ///< Descents that ended: unreachable, limits, or what `valid` said.
   double objective = 0;       ///< Sum of the objectives' costs at q; 0 without objectives.

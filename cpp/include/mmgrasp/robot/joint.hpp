@@ -11,11 +11,12 @@
 
 namespace mmgrasp {
 
+/// How a link moves against its parent, by URDF's names; `continuous` is a revolute joint without limits.
 enum class JointType { fixed, revolute, continuous, prismatic, planar, floating };
 MMGRASP_EXPORT const char* to_string(JointType type);
 
-/// One URDF joint. Planar joints have 3 values (x, y, theta), floating ones 6 (x, y, z, rotation vector), fixed 0,
-/// others 1.
+/// One URDF joint: where a child link sits on its parent, and how it may move against it. Planar joints have 3 values
+/// (x, y, theta), floating ones 6 (x, y, z, rotation vector), fixed 0, others 1.
 struct MMGRASP_EXPORT Joint {
   std::string name;
   JointType type = JointType::fixed;
@@ -44,6 +45,7 @@ struct MMGRASP_EXPORT LinkShape {
   Eigen::Vector3d mesh_scale = Eigen::Vector3d::Ones();
 };
 
+/// One URDF link: a rigid body with its collision shapes, and its joints as indices into Robot::joints().
 struct MMGRASP_EXPORT Link {
   std::string name;
   int parent_joint = -1;  ///< -1 for the root.

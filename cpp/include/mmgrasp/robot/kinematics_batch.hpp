@@ -13,7 +13,7 @@ namespace mmgrasp {
 /// 1e-12, several configurations at a time. Throws InvalidInput when Q has not size() rows.
 MMGRASP_EXPORT void fk_batch(const JointGroup& group, const Eigen::Ref<const Eigen::MatrixXd>& Q, Poses& T_world_tip);
 
-/// With the world-aligned Jacobians at the tip, stored next to each other: 6 x (m size()).
+/// fk_batch() with the world-aligned Jacobians at the tip, stored next to each other: 6 x (m size()).
 MMGRASP_EXPORT void fk_jacobian_batch(const JointGroup& group, const Eigen::Ref<const Eigen::MatrixXd>& Q,
                                       Poses& T_world_tip, Matrix6Xd& J);
 

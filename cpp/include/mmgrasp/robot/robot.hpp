@@ -26,6 +26,8 @@ struct MMGRASP_EXPORT RobotOptions {
   bool allow_missing_meshes = false;  ///< true: a missing mesh is a warning in the report, not an IoError.
 };
 
+/// Why a pair of links needs no check for self-collision, by the SRDF's names; `default_`: the SRDF switched it off for
+/// all pairs of a link.
 enum class DisabledReason { adjacent, never, always, user, default_ };
 
 /// What loading found: shown by `mmgrasp check`.
@@ -44,6 +46,7 @@ struct MMGRASP_EXPORT GroupDescription {
   std::vector<std::string> links = {};  ///< Carried by the joints that the SRDF names, fixed and mimic ones too.
 };
 
+/// An end effector of the SRDF: the joint group of the hand, and the arm's link that it is mounted on.
 struct MMGRASP_EXPORT EndEffectorDescription {
   std::string name, group, parent_link;
 };

@@ -16,7 +16,7 @@ struct MMGRASP_EXPORT GripperEvent {
   double time = 0;                                            ///< [s]
   double duration = 0;                                        ///< [s], >= 0
   bool closes = true;                                         ///< Otherwise it opens.
-  double opening = std::numeric_limits<double>::quiet_NaN();  ///< At the end [m]; not a number: not known.
+  double opening = std::numeric_limits<double>::quiet_NaN();  ///< Opening afterwards [m]; NaN: not known.
   std::string object;                                         ///< What is held afterwards, or no longer; may be empty.
 };
 

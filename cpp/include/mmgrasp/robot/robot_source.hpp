@@ -32,8 +32,8 @@ struct MMGRASP_EXPORT AddedLink {
   std::vector<LinkShape> shapes = {};
 };
 
-/// What a robot was made of, for those who read it by other means than Robot does (verify/plan_check.hpp). Of what
-/// Robot understood of the URDFs it holds nothing but the files that it found for their meshes.
+/// What a robot was made of, for those who read it by other means than Robot does (verify/plan_to_check.hpp). It
+/// holds nothing that Robot understood of the URDFs but the files that were found for their meshes.
 struct MMGRASP_EXPORT RobotSource {
   BaseKind base = BaseKind::fixed;
   BaseLimits base_limits;

@@ -23,8 +23,8 @@ struct MMGRASP_EXPORT BeamSection {
   double iy = 0;       ///< Second moment about y, for bending in z [m4]; > 0.
   double iz = 0;       ///< Second moment about z, for bending in y [m4]; > 0.
   double torsion = 0;  ///< Torsion constant J [m4]; > 0.
-  /// For stresses; zero where they are not known, and none is reported then. Farthest fibres in y and z [m], and torque
-  /// over the largest shear stress [m3].
+  /// Farthest fibres in y and z [m], and torque over the largest shear stress [m3]: what stresses follow from. Zero
+  /// where they are not known; no stress is reported then.
   double y_extent = 0, z_extent = 0, torsion_modulus = 0;
   bool round = false;  ///< Bending in y and z adds as vectors, not at a corner.
 

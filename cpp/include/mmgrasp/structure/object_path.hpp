@@ -21,13 +21,13 @@ namespace mmgrasp {
 /// A robot that carries an object along given poses (P2 3.2.1).
 struct MMGRASP_EXPORT ObjectPathProblem {
   JointGroup group;                    ///< Its tip is the tool frame of grasps.
-  World world;                         ///< Without the object.
+  World world;                         ///< All but the object.
   std::vector<LinkShape> object;       ///< The object's shapes, placed in its frame; never empty.
   Poses T_world_object;                ///< Where it lies, then where it goes: at least two.
   std::optional<Hand> gripper;         ///< Opens its fingers as each grasp says; none: they stay as the group has them.
   std::set<std::string> touch_links;   ///< Links that may touch the object; empty: as World::attach says.
   std::optional<BeamFrame> frame;      ///< How the object bends; none: it is stiff.
-  std::string object_name = "object";  ///< For allowed pairs and paddings of `world`.
+  std::string object_name = "object";  ///< Its name in allowed pairs and paddings of `world`.
   /// Throws InvalidInput naming field, value and rule.
   void check() const;
 };
@@ -42,9 +42,9 @@ struct MMGRASP_EXPORT ObjectPathOptions {
   double motion_scale = 1;          ///< [rad or m]; > 0. P2 adds the objectives as they are, without naming units.
   double deflection_scale = 1e-3;   ///< [m]; > 0.
   double manipulability_scale = 1;  ///< > 0.
-  double max_joint_step = 0.5;  ///< From waypoint to waypoint [rad or m]: more is a jump to another arm posture; > 0.
+  double max_joint_step = 0.5;  ///< A joint that moves more between waypoints jumps to another posture [rad or m]; > 0.
   double position_tolerance = 0.01;  ///< Half way between waypoints the object is this near to its path [m]; > 0.
-  double rotation_tolerance = 0.05;  ///< And turned by no more than this from it [rad]; > 0.
+  double rotation_tolerance = 0.05;  ///< There it is turned by no more than this from it [rad]; > 0.
   double edge_step = 0.02;           ///< No joint moves more than this between two collision checks [rad or m]; > 0.
   bool check_edges = true;           ///< Check motions between waypoints, which P2's Algorithm 3.1 leaves out.
   /// Only one arm configuration at each pose, as P2's single-IK variant has it (3.5.2.4): the nearest to the one
@@ -55,8 +55,8 @@ struct MMGRASP_EXPORT ObjectPathOptions {
   int redundant_values = 0;   ///< Samples of a seventh joint, evenly over its range; 0: 24. >= 0.
   double base_spacing = 0.2;  ///< Distance of the places where a moving base may stand, a grid along x and y [m]; > 0.
   int base_headings = 4;      ///< Base headings tried at each place, evenly over a turn; > 0.
-  double gravity = kGravity;  ///< Along the world's -z [m/s2]; >= 0.
-  double max_sag = 0;         ///< At each pose the object may bend by no more than this [m]; 0: as it likes. >= 0.
+  double gravity = kGravity;  ///< Acceleration along the world's -z [m/s2]; >= 0.
+  double max_sag = 0;         ///< The object may bend by no more than this at a pose [m]; 0: as it likes. >= 0.
   void check() const;
 };
 

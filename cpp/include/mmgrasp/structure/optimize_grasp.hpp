@@ -20,6 +20,7 @@ enum class GraspNeighbourhood {
 };
 MMGRASP_EXPORT const char* to_string(GraspNeighbourhood neighbourhood);
 
+/// The algorithm that searches the grasps of a pipe, its budget, and which grasps it may take.
 struct MMGRASP_EXPORT GraspSearchOptions {
   /// A name of population_search_names(), or "branch_and_bound": bees first, then boxes of grasps are divided until
   /// none can be cheaper by more than max_gap. For arms of six joints whose axes 2 and 3 are parallel and 4, 5 and 6
@@ -51,6 +52,7 @@ struct MMGRASP_EXPORT FeasibleGrasp {
   double joint_motion = 0, deflection = 0, force_manipulability = 0;  ///< O1 [rad or m], O2 [m], O3.
 };
 
+/// The cheapest grasp with which a pipe follows its path, what is proven of its cost, and the other feasible ones.
 struct MMGRASP_EXPORT GraspOptimum {
   /// solved: no grasp is cheaper by more than max_gap, or it meets the target. approximate: the best of the search,
   /// proven only as far as `gap` says. infeasible: proven that no grasp can do it. not_found, stopped.

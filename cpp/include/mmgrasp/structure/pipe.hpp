@@ -33,8 +33,8 @@ struct MMGRASP_EXPORT Pipe {
 
   static constexpr double kShortest = 1e-3;  ///< [m]
   double length(int section) const;          ///< Between the section's nodes [m].
-  /// At the section's first node, x along the section. y is the object's z turned into the plane across the section,
-  /// or the object's x when the section runs along z (within 0.06 rad): what P2 figure 3.5 leaves open.
+  /// The section's frame: at its first node, x along the section. y is the object's z turned into the plane across the
+  /// section, or the object's x when the section runs along z (within 0.06 rad): what P2 figure 3.5 leaves open.
   Pose T_object_section(int section) const;
   /// Centre of mass of tubes with equal walls: sections weigh by length times diameter.
   Eigen::Vector3d centre_of_mass() const;

@@ -11,6 +11,7 @@
 
 namespace mmgrasp {
 
+/// The hand's axes and opening, and how densely grasps are drawn along and around a pipe.
 struct MMGRASP_EXPORT PipeGraspOptions {
   Eigen::Vector3d approach = Eigen::Vector3d::UnitX();  ///< Unit axis of the tool frame along which the hand moves in.
   Eigen::Vector3d closing = Eigen::Vector3d::UnitY();   ///< Unit axis of the tool frame along which the pads close.

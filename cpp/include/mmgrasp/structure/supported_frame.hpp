@@ -32,7 +32,7 @@ struct MMGRASP_EXPORT BeamExtreme {
   double distance = 0;  ///< From the member's first node [m].
 };
 
-/// How a supported frame bends under one load. In the object's frame.
+/// How a supported frame bends under one load; all of it in the object's frame.
 struct MMGRASP_EXPORT BeamState {
   Matrix6Xd nodes;  ///< Displacement [m] and rotation [rad] of each node; 6 x n.
   /// Force [N] and moment [N m] of each support on the frame, about the support's place; 6 x supports.
@@ -57,7 +57,7 @@ class MMGRASP_EXPORT SupportedFrame {
  public:
   SupportedFrame(const BeamFrame& frame, const std::vector<BeamSupport>& supports);
 
-  /// With gravity [m/s2] given in the object's frame.
+  /// Displacements, reactions and stresses under gravity, which is given in the object's frame [m/s2].
   BeamState state(const Eigen::Vector3d& gravity) const;
   /// Displacement alone: what a search asks thousands of times. Exact along the members to 1e-9 of its value.
   BeamExtreme largest_displacement(const Eigen::Vector3d& gravity) const;

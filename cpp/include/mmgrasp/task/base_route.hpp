@@ -12,6 +12,7 @@
 
 namespace mmgrasp {
 
+/// How the base can move, where it may, and how finely plan_base_route() searches the floor.
 struct MMGRASP_EXPORT BaseRouteOptions {
   BaseKind base = BaseKind::diff_drive;
   /// Cell edge of the search [m]; > 0. Made coarser where the floor would have more than 500,000 cells.

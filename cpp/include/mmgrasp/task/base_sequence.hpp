@@ -68,6 +68,7 @@ struct MMGRASP_EXPORT Stop {
   std::size_t arrivals_served = 0;  ///< Those of them from which all parts of its trays can be grasped.
 };
 
+/// Stops that together serve the trays, and how few are proven to be enough.
 struct MMGRASP_EXPORT StopSet {
   /// solved: proven least; approximate: a cover that may have too many stops; infeasible: proven that a tray is in no
   /// stop, for the regions as given.

@@ -41,7 +41,8 @@ struct MMGRASP_EXPORT DriveByTask {
   /// fingers alone may touch it, and once attached it keeps clear of everything. One that rests on something counts as
   /// 1 mm higher from then on.
   std::string object;
-  std::optional<DriveByPush> push;  ///< Without dwell, max_tool_speed, tolerance and free axes.
+  std::optional<DriveByPush>
+      push;  ///< A push-grasp at the task, which then has no dwell, max_tool_speed, tolerance or free axes.
 };
 
 /// Where the motion ends.
@@ -49,6 +50,7 @@ struct MMGRASP_EXPORT DriveByGoal {
   Eigen::VectorXd lower, upper;  ///< Box of end configurations; equal: prescribed, infinite: free.
 };
 
+/// Waypoints of a motion in passing, and how many guesses and grasp assignments plan_drive_by() tries for it.
 struct MMGRASP_EXPORT DriveByOptions {
   int waypoints = 35;  ///< >= 2 + 2 per task, 2 + 6 per push-grasp.
   int seeds = 8;       ///< Guesses tried until one leads to a solution; > 0.
@@ -62,7 +64,7 @@ struct MMGRASP_EXPORT DriveByOptions {
   double jerk_time = 0;          ///< See WholeBodyProblem [s], >= 0; 0: no limit on jerk.
   bool collisions = true;        ///< The robot keeps clear of the world and of itself.
   unsigned seed = 1;             ///< Same seed, same answer.
-  int threads = 1;               ///< For the search of configurations; 0: all.
+  int threads = 1;               ///< Threads that search configurations; 0: all.
   WholeBodyOptions trajectory;
   void check() const;
 };
@@ -80,6 +82,7 @@ struct MMGRASP_EXPORT DriveByEvent {
   double tool_speed = 0;                 ///< Speed of the tip at the waypoint [m/s].
 };
 
+/// A motion of base and arm through all tasks, what happens at each, and what it breaks if anything.
 struct MMGRASP_EXPORT DriveByResult {
   Outcome outcome = Outcome::not_found;
   std::shared_ptr<const WholeBodyTrajectory> trajectory;  ///< Null when there was not even a guess.

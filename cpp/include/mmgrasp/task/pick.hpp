@@ -39,6 +39,7 @@ struct MMGRASP_EXPORT Pick {
   double duration() const;          ///< [s]
 };
 
+/// Straight moves before and after a pick's grasp, and how much planning may be spent on it.
 struct MMGRASP_EXPORT PickOptions {
   double approach_distance = 0.08;  ///< Straight move from pre-grasp to grasp, along the approach axis [m]; > 0.
   double lift_height = 0.12;        ///< Straight upward move after closing [m]; > 0.
@@ -50,7 +51,8 @@ struct MMGRASP_EXPORT PickOptions {
 
 /// An object of a world that an arm is to pick, whatever it is and wherever it lies.
 struct MMGRASP_EXPORT PickProblem {
-  /// Without base joints, its root where the robot stands (JointGroup::at); its reference holds the other joints (head,
+  /// A group without base joints, its root where the robot stands (JointGroup::at); its reference holds the other
+  /// joints (head,
   /// ...) and the fingers at rest.
   JointGroup arm;
   Hand gripper;

@@ -58,6 +58,7 @@ struct MMGRASP_EXPORT MountedCamera {
   Pose T_link_camera = Pose::Identity();
 };
 
+/// Two tool poses of one job, and what a camera must see at each (p_1 to p_4 of P3 3.6), in the world.
 struct MMGRASP_EXPORT PlatformLocationsProblem {
   Pose T_world_pick = Pose::Identity();                   ///< p_1: tool pose that picks the part.
   Pose T_world_place = Pose::Identity();                  ///< p_2: tool pose that places or inserts it.
@@ -66,6 +67,7 @@ struct MMGRASP_EXPORT PlatformLocationsProblem {
   std::optional<MountedCamera> camera;                    ///< None (or one in the hand): the view is not checked.
 };
 
+/// How many configurations are drawn for the two tool poses, and what a turn of the base counts as.
 struct MMGRASP_EXPORT PlatformLocationsOptions {
   int samples = 100;                   ///< Valid configurations drawn for each of the two poses (P3's n); > 0
   int max_draws = 2000;                ///< Searches run for each pose, valid or not; > 0
@@ -85,6 +87,7 @@ struct MMGRASP_EXPORT PlatformLocationsCounts {
   std::size_t iterations = 0;  ///< IK iterations of all draws.
 };
 
+/// Configurations of base and arm at the two tool poses, and how far the base travels between them.
 struct MMGRASP_EXPORT PlatformLocations {
   Outcome outcome = Outcome::not_found;
   Eigen::VectorXd q_pick, q_place;  ///< Base and arm; set if and only if solved, every constraint checked again.

@@ -20,7 +20,7 @@ MMGRASP_EXPORT const char* to_string(UpdatePolicy policy);
 /// "all", "remaining" or "targets"; throws InvalidInput naming these on anything else.
 MMGRASP_EXPORT UpdatePolicy make_update_policy(const std::string& name);
 
-/// From where each part can be grasped: one bitmap a part, by tray.
+/// Base poses from which each part can be grasped: one bitmap a part, by tray.
 struct MMGRASP_EXPORT PartRegions {
   BaseGrid grid;
   std::vector<std::vector<CellMask>> cells;  ///< [tray][part]
@@ -39,6 +39,7 @@ using PickingOrder = std::vector<std::vector<int>>;
 /// round without a partner is -1, and parts left over take rounds in which the tray before has none.
 MMGRASP_EXPORT PickingOrder paired_order(const std::vector<std::vector<Eigen::Vector2d>>& places);
 
+/// What a picking order should make large, and how many orders optimised_order() tries.
 struct MMGRASP_EXPORT OrderOptions {
   bool smallest_first = false;      ///< Maximise the smallest radius over the rounds, then their sum; else the sum.
   int restarts = 20;                ///< Random orders to start from, where a search is needed; >= 0.
@@ -47,10 +48,11 @@ struct MMGRASP_EXPORT OrderOptions {
   void check() const;
 };
 
+/// A picking order, and how large the discs are in which the base may stop for its rounds.
 struct MMGRASP_EXPORT OptimisedOrder {
   PickingOrder order;
-  double mean_radius = 0;      ///< Over rounds and groups [m].
-  double smallest_radius = 0;  ///< [m]
+  double mean_radius = 0;      ///< Mean radius of the discs, over rounds and groups [m].
+  double smallest_radius = 0;  ///< Smallest of these radii [m].
   bool proven = true;          ///< No other order is better for these groups.
 };
 
@@ -75,7 +77,7 @@ struct MMGRASP_EXPORT PolicyRound {
 struct MMGRASP_EXPORT PolicyResult {
   std::vector<PolicyRound> rounds;
   double mean_radius = 0;      ///< P1 equation 3.2 [m].
-  double smallest_radius = 0;  ///< Over all stops of all rounds [m].
+  double smallest_radius = 0;  ///< Smallest disc of all stops of all rounds [m].
   double mean_stops = 0;
   bool solved = false;    ///< Every round has stops.
   bool reliable = false;  ///< Every round is.
@@ -83,6 +85,7 @@ struct MMGRASP_EXPORT PolicyResult {
   bool feasible = false;  ///< All three.
 };
 
+/// How the stops of each round are planned, and how long that may take between two rounds.
 struct MMGRASP_EXPORT PolicyOptions {
   StopOptions stops;
   double online_limit = 1.0;  ///< Seconds that may pass between two rounds; > 0.

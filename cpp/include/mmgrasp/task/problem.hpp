@@ -42,6 +42,7 @@ struct MMGRASP_EXPORT PlaceRegion {
   double drop_height = 0.03;                         ///< [m], >= 0
 };
 
+/// The base poses tried around a tray: how dense, how far away, and with how many guesses for the arm.
 struct MMGRASP_EXPORT BaseGridOptions {
   double resolution = 0.05;  ///< Cell edge [m]; > 0.
   double max_distance =
@@ -49,6 +50,7 @@ struct MMGRASP_EXPORT BaseGridOptions {
   int ik_seeds = 8;  ///< Database configurations refined for each grasp and base pose; > 0.
 };
 
+/// What a part-supply plan must allow for (an imprecise base, straight moves at a part), and the budgets of its stages.
 struct MMGRASP_EXPORT PartSupplyOptions {
   BaseGridOptions grid;
   double positioning_uncertainty = 0.10;  ///< Radius of the disc in which the base may come to stand [m]; >= 0.

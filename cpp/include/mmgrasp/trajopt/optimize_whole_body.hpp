@@ -28,7 +28,7 @@ struct MMGRASP_EXPORT WholeBodyGuess {
   bool keeps_sides = true;
 };
 
-/// Options of optimize_whole_body().
+/// When optimize_whole_body() ends, how smooth its motion is, and how far it keeps from obstacles.
 struct MMGRASP_EXPORT WholeBodyOptions {
   std::string solver = "ipopt";       ///< A name of nlp_solver_names().
   double tolerance = 1e-4;            ///< Relative optimality, in (0, 1).
@@ -54,7 +54,7 @@ struct MMGRASP_EXPORT Violation {
   bool kept() const { return value <= tolerance; }
 };
 
-/// A trajectory, how sure it is, and which constraints it breaks by how much.
+/// A trajectory, whether it is proven optimal, and which constraints it breaks by how much.
 struct MMGRASP_EXPORT WholeBodyResult {
   /// solved only after check_whole_body found every constraint kept; approximate: kept, optimality not shown.
   Outcome outcome = Outcome::not_found;

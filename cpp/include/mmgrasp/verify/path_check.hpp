@@ -7,7 +7,7 @@
 
 #include "mmgrasp/core/export.hpp"
 #include "mmgrasp/robot/robot_source.hpp"
-#include "mmgrasp/verify/plan_check.hpp"
+#include "mmgrasp/verify/plan_to_check.hpp"
 
 namespace mmgrasp::verify {
 
@@ -23,6 +23,7 @@ struct MMGRASP_EXPORT PathToCheck {
   std::vector<Eigen::VectorXd> waypoints;       ///< Joined by straight lines in joint space.
 };
 
+/// Whether a path is free, and if not, where it first touches or leaves its limits.
 struct MMGRASP_EXPORT PathCheckResult {
   bool free = false;
   std::string where;  ///< E.g. "edge 3 at 0.42: 'hand' touches 'can'"; empty when free.

@@ -1,172 +1,17 @@
 #pragma once
 
-#include <Eigen/Core>
-#include <cstdint>
-#include <limits>
-#include <map>
+#include <cstddef>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "mmgrasp/core/export.hpp"
 #include "mmgrasp/core/monitor.hpp"
-#include "mmgrasp/core/pose.hpp"
-#include "mmgrasp/robot/robot_source.hpp"
+#include "mmgrasp/verify/plan_to_check.hpp"
 
 namespace mmgrasp::verify {
 
-/// A scene body as the plan file describes it.
-struct MMGRASP_EXPORT CheckedBody {
-  std::string name;
-  std::vector<LinkShape> shapes;
-  Pose T_world_body = Pose::Identity();
-};
-
-struct MMGRASP_EXPORT CheckedGrasp {
-  Pose T_object_hand = Pose::Identity();
-  double opening = 0;  ///< Between the pads while holding [m].
-};
-
-struct MMGRASP_EXPORT CheckedPart {
-  CheckedBody body;
-  std::string tray;
-  bool target = true;
-  std::vector<CheckedGrasp> grasps;
-};
-
-struct MMGRASP_EXPORT CheckedFinger {
-  std::string joint;
-  double closed = 0, open = 0;
-};
-
-struct MMGRASP_EXPORT CheckedMotion {
-  std::string kind;  ///< transit, approach, lift, transfer, retreat
-  double opening = 0;
-  bool attached = false;
-  std::vector<double> times;
-  std::vector<Eigen::VectorXd> positions, velocities;
-  std::vector<Eigen::VectorXd> accelerations = {};  ///< Empty: not given.
-};
-
-struct MMGRASP_EXPORT CheckedPick {
-  int stop = -1;
-  std::string tray, part;
-  int grasp = -1;
-  std::vector<CheckedMotion> motions;
-};
-
-/// Drive to a stop and the first pick there up to its lift, in one motion of base and arm. The fingers open before it,
-/// and close while the tool keeps its place in the room.
-struct MMGRASP_EXPORT CheckedDriveBy {
-  int pick = -1;         ///< Index into the plan's picks.
-  double close_at = 0;   ///< The fingers begin to close [s],
-  double closed_at = 0;  ///< and from here on hold the part [s].
-  CheckedMotion motion;  ///< Rows hold x, y, theta, then the arm's joints; `opening` is that before closing.
-};
-
-struct MMGRASP_EXPORT CheckedStop {
-  Eigen::Vector3d pose = Eigen::Vector3d::Zero();
-  double radius = 0;
-  std::vector<std::string> trays;
-  int arrivals = 0, arrivals_served = 0;  ///< Arrivals that the planner drew, and those that served all parts.
-};
-
-struct MMGRASP_EXPORT CheckedRegion {
-  std::string tray;
-  std::vector<std::uint8_t> cells;  ///< (heading * ny + iy) * nx + ix
-};
-
-struct MMGRASP_EXPORT CheckedGrid {
-  Eigen::Vector2d origin = Eigen::Vector2d::Zero();
-  double resolution = 0.05;
-  int nx = 0, ny = 0;
-  std::vector<double> headings;
-};
-
-/// How base poses for a tray were searched.
-struct MMGRASP_EXPORT CheckedTray {
-  std::vector<double> headings;                                   ///< Base headings tried [rad].
-  Eigen::Vector2d middle = Eigen::Vector2d::Zero();               ///< Middle of the tray, in the world [m].
-  double max_distance = std::numeric_limits<double>::infinity();  ///< Base poses farther from it were left out [m].
-  bool shares_headings = false;  ///< Tried at other trays' headings, too, where one of these trays can be served.
-};
-
-/// What a plan says about a leg of its route.
-struct MMGRASP_EXPORT CheckedLegValues {
-  double length = 0, turning = 0, duration = 0;
-};
-
-/// A place that a plan says lies in the regions of several trays.
-struct MMGRASP_EXPORT CheckedIntersection {
-  std::vector<std::string> trays;
-  double heading = 0;
-  Eigen::Vector2d centre = Eigen::Vector2d::Zero();
-  double radius = 0;
-};
-
-/// Two that may touch: links, obstacles or parts by their names.
-using CheckedPair = std::pair<std::string, std::string>;
-
-/// A whole plan, as read from plan.json: what the checker needs to know of robot, room and parts, and what is claimed.
-/// Knows nothing of how it was made.
-///
-///     PlanToCheck plan(source);  // the URDFs, unread
-///     plan.parts = parts;
-///     plan.stops = stops;
-///     for (const Fault& fault : check_plan(plan).faults) std::cout << fault.code << ": " << fault.message << "\n";
-struct MMGRASP_EXPORT PlanToCheck {
-  explicit PlanToCheck(RobotSource checked_robot) : robot(std::move(checked_robot)) {}
-
-  RobotSource robot;          ///< What the robot really is: its URDFs as they were given.
-  RobotSource planned_robot;  ///< As the planners understood it (Robot::to_urdf()); without URDFs: not compared.
-  std::vector<std::string> arm_joints;
-  std::vector<double> velocity_limits, acceleration_limits;  ///< One an arm joint.
-  std::string tip_link;
-  std::map<std::string, double> other_joints;
-  double max_opening = 0.1, clearance = 0.01;
-  Eigen::Vector3d approach = Eigen::Vector3d::UnitX();  ///< Unit axis in the tip frame.
-  Eigen::Vector3d closing = Eigen::Vector3d::UnitY();   ///< Unit axis in the tip frame along which the pads close.
-  double finger_depth = 0;       ///< Size of a pad along the approach axis [m]; 0: widths are not compared with parts.
-  double finger_width = 0;       ///< Size of a pad across approach and closing [m]; 0: likewise.
-  double approach_distance = 0;  ///< Least straight way to a grasp [m]; >= 0.
-  double lift_height = 0.01;     ///< Least straight way up after closing [m]; > 0.
-  std::vector<CheckedFinger> fingers;
-  /// Openings at equal steps of the finger joints from closed to open [m], rising; empty: linear from 0 to max_opening.
-  std::vector<double> openings;
-  std::vector<std::string> finger_links;
-  Eigen::VectorXd home;
-  Eigen::Vector3d start = Eigen::Vector3d::Zero(), goal = Eigen::Vector3d::Zero();
-  double positioning_uncertainty = 0.1;
-  /// Covariance of x, y [m^2] and theta [rad^2] about a stop, in the world's axes; zero: arrivals are not judged.
-  Eigen::Matrix3d arrival_covariance = Eigen::Matrix3d::Zero();
-  Pose T_base_bin = Pose::Identity();
-  Eigen::Vector2d bin_size = Eigen::Vector2d(0.3, 0.3);
-  double drop_height = 0.03;
-  /// Everything below this height is ground [m], which what the arm joints move must not touch: the arm, the fingers, a
-  /// attached part. Other links may (wheels stand on it). -infinity: there is none.
-  double floor = -std::numeric_limits<double>::infinity();
-  std::vector<CheckedBody> obstacles;
-  std::vector<CheckedPart> parts;
-  std::vector<CheckedPair> allowed_collisions;  ///< Not checked: what else these touch is.
-  /// The planner kept bodies apart by more than touching: cells beside a region, which serve without that, prove
-  /// nothing.
-  bool padded = false;
-  std::vector<std::string> trays;
-  std::map<std::string, CheckedTray>
-      searched;  ///< What was searched for each tray, by name; one that is not named may have any region.
-  CheckedGrid grid;
-  std::vector<CheckedRegion> regions;
-  std::vector<CheckedStop> stops;
-  std::vector<std::vector<Eigen::Vector3d>> route;  ///< stops.size() + 1 legs of base poses.
-  std::vector<CheckedPick> picks;
-  std::vector<CheckedDriveBy> drive_by;  ///< What of route and picks is done in passing.
-  double closing_speed = 0.1;            ///< How fast the gripper's opening shrinks [m/s], for drive_by.
-  int lower_bound = 0;
-  std::vector<CheckedLegValues> leg_values;  ///< One a leg; empty: not given.
-  std::vector<CheckedIntersection> intersections;
-  double robustness_rate = std::numeric_limits<double>::quiet_NaN();  ///< NaN: not given.
-};
-
+/// How finely check_plan() looks at motions and regions, and from where on a difference is a fault.
 struct MMGRASP_EXPORT PlanCheckOptions {
   double joint_step = 0.01;          ///< Arm paths are checked at least this finely [rad or m]; > 0.
   double base_step = 0.01;           ///< The route [m, and rad x 2]; > 0.
@@ -226,6 +71,7 @@ struct MMGRASP_EXPORT StopRate {
   std::string worst_part;
 };
 
+/// The faults of a plan, and what the checker found again by itself: rates of the stops, least number of stops.
 struct MMGRASP_EXPORT PlanCheckResult {
   std::vector<Fault> faults;  ///< Empty: the plan holds.
   std::vector<StopRate> rates;

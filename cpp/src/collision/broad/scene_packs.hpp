@@ -38,7 +38,7 @@ class ScenePacks {
  private:
   std::vector<BoxPack> packs_;
   std::vector<int> items_;
-  BoxTree tree_;  ///< Over packs.
+  BoxTree tree_;  ///< Hierarchy over the packs.
 };
 
 }  // namespace mmgrasp::detail

@@ -43,7 +43,7 @@ struct Body {
 struct SceneShape {
   int object = 0;
   Rigid T_world;
-  std::shared_ptr<const Solid> solid;                       ///< With its padding: whether it collides.
+  std::shared_ptr<const Solid> solid;                       ///< Its shape with padding: decides whether it collides.
   std::shared_ptr<const Solid> bare;                        ///< Without: how far away it is.
   Eigen::Vector3d sphere_centre = Eigen::Vector3d::Zero();  ///< Centre of the bounding sphere, world frame.
 };

@@ -9,6 +9,7 @@
 namespace mmgrasp {
 namespace {
 
+/// Cost of self pairs that come nearer than a margin. Threads that evaluate at the same time get a checker each.
 class SelfDistance final : public IkObjective {
  public:
   SelfDistance(const CollisionChecker& checker, double margin, double weight)

@@ -13,11 +13,12 @@ namespace mmgrasp::detail {
 /// of second order). Kept from edge to edge for its memory alone.
 class MMGRASP_EXPORT EdgeMotion {
  public:
-  /// To be called first, for each edge. `step`: motion of the joints in one piece. The placement must outlive the edge.
+  /// Begins with an edge; every other call is about it. `step`: motion of the joints in one piece. The placement must
+  /// outlive the edge.
   void start(const Placement& placement, const Eigen::VectorXd& q0, const Eigen::VectorXd& q1,
              const Eigen::VectorXd& step);
 
-  /// To be called when a check was placed.
+  /// Must be called when the bodies were placed for another check.
   void placed() { velocities_valid_ = false; }
 
   /// How plan().moving[body] moves in the world, up to `reach` pieces away.

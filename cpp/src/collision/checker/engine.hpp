@@ -37,7 +37,7 @@ class CheckerEngine {
   void count_queries(std::size_t more) { queries_ += more; }
 
   void set_root(const Pose& T_world_root);
-  /// To be called when the snapshot's attached object was placed anew.
+  /// Must be called when the snapshot's attached object was placed anew.
   void attached_moved();
 
   Rejection rejection(const Eigen::VectorXd& q);

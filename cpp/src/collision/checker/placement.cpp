@@ -16,7 +16,7 @@ Placement::Placement(std::shared_ptr<const Snapshot> snapshot, std::shared_ptr<c
       poses_(snapshot_->shapes.size()),
       pose_stamp_(snapshot_->shapes.size(), 0),
       moves_(snapshot_->shapes.size(), 0) {
-  sphere_numbers_.resize(4 * static_cast<std::size_t>(sphere_row_));
+  sphere_numbers_.resize(4 * sphere_row_);
   for (const int s : plan_->moving) moves_[s] = 1;
 }
 

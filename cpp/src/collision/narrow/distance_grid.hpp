@@ -51,7 +51,7 @@ class MMGRASP_EXPORT DistanceGrid {
   void fill(const Solid& solid);
   /// Distance of the centres of kFree cells to the mesh where that is at most `band`; infinite elsewhere [m].
   std::vector<float> centre_distances(const TriangleMesh& mesh, double band) const;
-  /// For each cell the squared distance to the nearest one whose entry is 0, in cells.
+  /// Replaces each entry by the squared distance of its cell to the nearest one whose entry is 0, in cells.
   void spread_out(std::vector<float>& squared) const;
   /// Turns kFree cells into distances of their centres; those of `near` are known, the rest is bounded from below.
   void measure_centres(const std::vector<float>& near, double band);

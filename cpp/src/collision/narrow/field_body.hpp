@@ -24,7 +24,7 @@ class FieldBody {
   /// `solid` must outlive it.
   explicit FieldBody(const Solid& solid);
 
-  const BoxTree& tree() const;  ///< Over the pieces.
+  const BoxTree& tree() const;  ///< Hierarchy over the pieces.
   Piece piece(int position) const;
   double radius() const { return radius_; }
   /// The corners of a body whose pieces make one convex polytope about middle(); else none.

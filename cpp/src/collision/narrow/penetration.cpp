@@ -20,6 +20,7 @@ struct Face {
   double offset;              // of its plane from the origin; negative when the origin lies outside
 };
 
+/// A polytope inside the difference of two bodies that overlap, grown towards the face nearest to the origin.
 class Polytope {
  public:
   Polytope(const Convex& a, const Convex& b, const Rigid& b_in_a) : a_(a), b_(b), b_in_a_(b_in_a) {}

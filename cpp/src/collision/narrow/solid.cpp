@@ -7,6 +7,7 @@
 #include "collision/narrow/convex_clearance.hpp"
 #include "collision/narrow/field_body.hpp"
 #include "collision/narrow/stages.hpp"
+#include "mmgrasp/core/detail/cell_key.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/geometry/detail/mesh_topology.hpp"
@@ -190,22 +191,13 @@ void set_mesh(Solid& solid, const TriangleMesh& mesh, std::vector<double>& hull_
   }
 }
 
-using CellKey = std::array<long, 3>;
-struct CellKeyHash {
-  std::size_t operator()(const CellKey& key) const {
-    std::uint64_t sum = 0;
-    for (const long each : key) sum = (sum ^ static_cast<std::uint64_t>(each)) * 0x9e3779b97f4a7c15ull;
-    return sum ^ (sum >> 32);
-  }
-};
-
 // One cell of each group of cells that touch (27 neighbours).
 std::vector<Eigen::Vector3d> cell_groups(const std::vector<Eigen::Vector3d>& cells, double resolution) {
   std::unordered_map<CellKey, int, CellKeyHash> index;
   index.reserve(cells.size());
   const auto key = [&](const Eigen::Vector3d& c) {
     const Eigen::Vector3d k = (c / resolution).array().floor();
-    return CellKey{static_cast<long>(k[0]), static_cast<long>(k[1]), static_cast<long>(k[2])};
+    return CellKey{static_cast<std::int64_t>(k[0]), static_cast<std::int64_t>(k[1]), static_cast<std::int64_t>(k[2])};
   };
   std::vector<int> parent(cells.size());
   std::iota(parent.begin(), parent.end(), 0);

@@ -38,7 +38,7 @@ struct MMGRASP_EXPORT Solid {
   double sphere_radius = 0;
   bool is_box = false;  ///< The bounding box is the shape.
 
-  BoxTree tree;                                  ///< Over triangles or voxels.
+  BoxTree tree;                                  ///< Hierarchy over triangles or voxels.
   std::vector<std::array<double, 9>> triangles;  ///< Corners in tree order: x of the three, then y, then z.
   std::vector<Eigen::Vector3d> cells;            ///< Voxel centres in tree order.
   double cell_half = 0;

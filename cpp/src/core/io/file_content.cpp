@@ -64,7 +64,7 @@ std::string file_content(const std::string& path, const std::string& kind, std::
   std::string text(size, '\0');
   file.seekg(0);
   file.read(text.data(), static_cast<std::streamsize>(size));
-  text.resize(static_cast<std::size_t>(file.gcount()));  // it may have been cut short meanwhile
+  text.resize(file.gcount());  // it may have been cut short meanwhile
   if (text.empty()) fail("is empty");
   return text;
 }

@@ -8,6 +8,7 @@
 
 namespace mmgrasp::detail {
 
+/// Recursive descent over a text; refuses anything after the first value, and values nested too deeply.
 class JsonReader {
  public:
   JsonReader(const std::string& text, const std::string& where) : text_(text), where_(where) {}

@@ -9,6 +9,7 @@ namespace {
 
 constexpr std::size_t kMaxNesting = 200;  // real robot files stay below 10; parsers recurse once per level
 
+/// Goes from tag to tag of a text and stops at the first that an XML reader would misread.
 class MarkupWalk {
  public:
   explicit MarkupWalk(std::string_view text) : text_(text) {}

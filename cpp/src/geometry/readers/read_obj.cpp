@@ -25,6 +25,7 @@ std::vector<std::string_view> split(std::string_view line) {
   return words;
 }
 
+/// Collects vertices and faces line by line; faces with more corners become fans of triangles.
 class ObjReader {
  public:
   explicit ObjReader(const std::string& path) : path_(path) {}

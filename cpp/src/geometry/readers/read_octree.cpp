@@ -25,6 +25,7 @@ struct Cell {
   Cell child(int i) const { return {depth + 1, 2 * x + (i & 1), 2 * y + (i >> 1 & 1), 2 * z + (i >> 2 & 1)}; }
 };
 
+/// Goes through the tree depth first, as it is stored, and collects the occupied leaves by their depth.
 class OctreeReader {
  public:
   OctreeReader(const std::string& path, std::string_view content) : path_(path), content_(content) {}

@@ -55,6 +55,7 @@ std::vector<std::string_view> words_of(std::string_view line) {
   return words;
 }
 
+/// Reads the header, finds where each field lies in a point, then decodes the points in the layout the header names.
 class PcdReader {
  public:
   PcdReader(const std::string& path, std::string_view content) : path_(path), content_(content) {}

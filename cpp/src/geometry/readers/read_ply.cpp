@@ -48,6 +48,7 @@ double decode(const char* bytes, bool swap) {
   return static_cast<double>(value);
 }
 
+/// Reads the header, then the elements it announces one after another; only vertices and faces are kept.
 class PlyReader {
  public:
   PlyReader(const std::string& path, std::string_view content)

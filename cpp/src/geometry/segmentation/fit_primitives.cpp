@@ -54,7 +54,7 @@ Vector3d main_normal(const SegmentSurface& s, const Vector3d& axis) {
 FittedPrimitive box_along(const SegmentSurface& s, const Eigen::Matrix3d& axes) {
   Eigen::AlignedBox3d box;
   for (const Vector3d& p : s.hull.points) box.extend(axes.transpose() * p);
-  // For the faces on each side: area, and mean place along the axis by area, which noise does not push out.
+  // Area of the faces on each side, and their mean place along the axis by area, which noise does not push out.
   double area[3][2] = {}, place[3][2] = {}, off = 0, all = 0;
   for (std::size_t f = 0; f < s.areas.size(); ++f) {
     const Vector3d middle = axes.transpose() * ((s.corners[f][0] + s.corners[f][1] + s.corners[f][2]) / 3);

@@ -35,6 +35,8 @@ struct Region {
   }
 };
 
+/// Regions with their hulls: narrow ones join a neighbour, then pairs are joined whose common hull holds little that
+/// belongs to neither, the best pair first.
 class RegionJoiner {
  public:
   RegionJoiner(const FaceGraph& graph, int count, const std::vector<int>& labels) : regions_(count), into_(count) {

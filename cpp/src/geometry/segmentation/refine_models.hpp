@@ -8,7 +8,7 @@ namespace mmgrasp::detail {
 
 struct RoundFit {
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< Unit; of a cone from foot to apex.
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< On the axis; a sphere's centre, a cone's apex.
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< Any on a cylinder's axis; a sphere's centre, a cone's apex.
   double radius = 0;                                ///< Radius of a cylinder or sphere.
   double half_angle = 0;                            ///< Half opening angle of a cone [rad].
 

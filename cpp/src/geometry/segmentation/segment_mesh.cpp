@@ -176,7 +176,7 @@ MeshSegmentation segment_mesh(const TriangleMesh& mesh, const MeshSegmentationOp
     out.threads = detail::find_threads(smooth);
     for (const ScrewThread& thread : out.threads) detail::smooth_thread(thread, smooth);
   }
-  const std::size_t most = std::max<std::size_t>(4 * static_cast<std::size_t>(options.faces), mesh.triangles.size());
+  const std::size_t most = std::max<std::size_t>(4 * options.faces, mesh.triangles.size());
   const FaceGraph graph = detail::refined_faces(smooth, longest, most);
   const std::vector<double> diameters = shape_diameters(graph.mesh(), options.diameter, monitor);
   if (monitor.stopped()) return stopped();

@@ -54,6 +54,7 @@ double mean_width(std::vector<Width>& widths, double outlier) {
   return weights > 0 ? sum / weights : median;
 }
 
+/// Measures faces one by one: casts their cones of rays, and takes the mean without outliers.
 class DiameterMeter {
  public:
   DiameterMeter(const TriangleMesh& mesh, const ShapeDiameterOptions& options)

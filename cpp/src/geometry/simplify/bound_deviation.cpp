@@ -25,6 +25,7 @@ struct Cell {
   bool operator<(const Cell& other) const { return bound < other.bound; }
 };
 
+/// Splits cubes around the solid, the one with the largest bound first, until what is left to gain does not matter.
 class DeviationSearch {
  public:
   DeviationSearch(const TriangleMesh& solid, const TriangleMesh& mesh) : solid_(solid), mesh_(mesh) {

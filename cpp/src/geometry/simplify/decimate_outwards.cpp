@@ -35,6 +35,7 @@ struct Collapse {
   }
 };
 
+/// Collapses edges, the cheapest first, to points that lie outside of all planes around: the solid only grows.
 class OutwardCollapse {
  public:
   OutwardCollapse(const TriangleMesh& mesh, double reach)

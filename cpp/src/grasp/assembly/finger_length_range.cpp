@@ -94,13 +94,14 @@ Column palm(const AssemblyGrasp& grasp) {
   return Column(std::move(sides));
 }
 
-/// From the pose's parent to heights: x and y in the plane of the tips, z towards the palm.
+/// Transform from the pose's parent to the frame of heights: x and y in the plane of the tips, z towards the palm.
 Eigen::Isometry3d height_frame(const Pose& T_parent_tool) {
   Eigen::Isometry3d flip = Eigen::Isometry3d::Identity();
   flip.linear() = Eigen::Vector3d(1, -1, -1).asDiagonal();  // Mirrored fingers are the same fingers.
   return flip * T_parent_tool.inverse();
 }
 
+/// Collects from every part, over the whole operation, how high it stands under fingers and palm.
 class Range {
  public:
   Range(const AssemblyGrasp& grasp, const AssemblyOperation& operation, double step)

@@ -45,6 +45,7 @@ double line_angle(double a, double b) {
   return d;
 }
 
+/// Every closing direction, opening and fingertip height as one item of work; the best places of all are kept apart.
 class Evaluation {
  public:
   Evaluation(const HeightMap& map, const Hand& hand, const GraspabilityOptions& options)
@@ -70,7 +71,7 @@ class Evaluation {
 
   ItemResult evaluate(std::size_t index) const {
     const Item& item = items_[index];
-    const auto& masks = masks_[static_cast<std::size_t>(item.orientation) * openings_.size() + item.opening];
+    const auto& masks = masks_[item.orientation * openings_.size() + item.opening];
     const detail::TipLayer& layer = layers_[item.layer];
     const detail::LayerMap map = detail::layer_map(layer, masks, in_cells(options_.smoothing, map_.resolution) / 2);
     ItemResult result;

@@ -29,7 +29,7 @@ class FingerShapes {
   FingerShapes(const Robot& robot, int tool_link, const std::vector<int>& driven);
 
   std::vector<Eigen::Vector3d> leaf_centres(const Eigen::VectorXd& values) const;
-  /// From the fingers' first joints to their leaves, on average.
+  /// Mean direction from the fingers' first joints to their leaves.
   Eigen::Vector3d outward(const Eigen::VectorXd& values) const;
   /// Fixes the axes and takes as tips the leaves that reach farthest along the approach. False unless some stand on
   /// either side.

@@ -65,6 +65,7 @@ std::map<std::string, double> state_of(const Robot& robot, const std::string& gr
   return {};
 }
 
+/// Builds a Hand step by step: its driven joints, its axes, which end of each joint is open, range and openings.
 class Reader {
  public:
   Reader(const Robot& robot, const std::string& tool_link, const HandReading& reading)

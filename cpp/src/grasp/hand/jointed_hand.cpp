@@ -20,6 +20,7 @@ constexpr double kPadLength = 0.6;   // of a fingertip's length that its pad tak
 constexpr double kLeastPad = 0.004;  // least side of a pad [m]
 constexpr double kShareStep = 0.01;  // for the way a tip moves, by finite differences
 
+/// A hand whose pads and bodies follow from forward kinematics of its driven joints.
 class JointedHand final : public HandModel {
  public:
   JointedHand(const Hand& hand, const Robot& robot)

@@ -52,6 +52,7 @@ Eigen::AlignedBox3d bounds_of(const std::vector<LinkShape>& shapes, const Pose& 
   return box;
 }
 
+/// Fills a tray part by part: each falls from a random place until it meets the floor or another part.
 class Placer {
  public:
   Placer(const std::vector<LinkShape>& part, const Vector3d& tray_size, double wall, const PlacementOptions& options)
@@ -81,7 +82,7 @@ class Placer {
   std::optional<PlacedPart> place() {
     for (const bool on_others : {false, true}) {
       if (on_others && !options_.stack) break;
-      for (int i = 0; i < options_.attempts; ++i) {
+      for (int i = 0; i < options_.draws; ++i) {
         std::optional<PlacedPart> found = drop(on_others);
         if (found) {
           keep(*found);
@@ -181,7 +182,7 @@ class Placer {
 
 void PlacementOptions::check() const {
   require(count >= 0, "count", count, "must be zero or positive");
-  require(attempts > 0, "attempts", attempts, "must be positive");
+  require(draws > 0, "draws", draws, "must be positive");
   require(std::isfinite(clearance) && clearance > 0, "clearance", clearance, "must be positive and finite [m]");
 }
 

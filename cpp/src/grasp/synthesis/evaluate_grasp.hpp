@@ -65,7 +65,7 @@ class GraspEvaluator {
   const MapSurface& surface_;
   const SynthesisOptions& options_;
   HandClearance clearance_;
-  std::vector<double> openings_;  ///< At equal steps of the shares, all the same; rising.
+  std::vector<double> openings_;  ///< Openings at equal steps of the shares; rising.
 };
 
 }  // namespace mmgrasp::detail

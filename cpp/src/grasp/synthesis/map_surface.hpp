@@ -19,7 +19,7 @@ class MMGRASP_EXPORT MapSurface {
   /// Throws InvalidInput for a map without a surface, or without one where the object should be.
   MapSurface(const ProbabilisticSdf& map, const SynthesisOptions& options);
 
-  /// Over the object's points around that face the same way: single ones are noisy.
+  /// Mean normal of the object's points around that face the same way: single ones are noisy.
   Eigen::Vector3d mean_normal(std::size_t i) const;
 
   std::vector<Eigen::Vector3d> object, object_normal;

@@ -31,6 +31,7 @@ struct Sample {
   SynthesisCounts draws;
 };
 
+/// Draws grasps over the object, evaluates them, refines the best, and checks once more what is returned.
 class Search {
  public:
   Search(const ProbabilisticSdf& map, const HandModel& hand, const SynthesisOptions& options, const Monitor& monitor,

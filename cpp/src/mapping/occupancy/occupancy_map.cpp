@@ -1,4 +1,4 @@
-// Like DepthImage and Voxels, nothing of OctoMap shows in the header.
+// OctoMap behind OccupancyMap: the public header shows nothing of it.
 #include "mmgrasp/mapping/occupancy_map.hpp"
 
 #include <octomap/OcTree.h>

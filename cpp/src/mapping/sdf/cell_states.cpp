@@ -42,6 +42,7 @@ bool surely_positive(const Corner* corners, int count, float sigmas) {
   return false;
 }
 
+/// Tells occupied cells, in which mean - sigmas * sigma may be zero or less, from clear ones, in which it never is.
 class CellStates {
  public:
   CellStates(const SdfGrid& grid, double sigmas)

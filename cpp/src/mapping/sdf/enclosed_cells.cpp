@@ -35,6 +35,7 @@ struct Place {
   int cell = -1;   // of the block
 };
 
+/// Floods free and unknown cells from outside; what it does not reach is enclosed.
 class Flood {
  public:
   explicit Flood(CellBlocks& cells) : cells_(cells), reached_(cells.blocks.size()) {

@@ -14,6 +14,7 @@ namespace {
 using Eigen::Vector3d;
 constexpr int kSide = kBlockSide + 1;  // with the first voxels of the next blocks
 
+/// Marching cubes block by block; vertices on common edges are made once.
 class Extraction {
  public:
   explicit Extraction(const SdfGrid& grid) : grid_(grid), sampler_(grid), mesh_(std::make_shared<TriangleMesh>()) {}

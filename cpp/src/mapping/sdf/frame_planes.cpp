@@ -34,6 +34,7 @@ struct WindowFit {
 /// More than noise makes of it in a window of this size.
 constexpr float kGoodFit = 1.4f;
 
+/// Fits a plane to the neighbours of every pixel on the same surface, and finds how uncertain its depth is.
 class PlaneFitter {
  public:
   PlaneFitter(const DepthImage& image, const DepthCamera& camera, const FrameUncertainty& uncertainty,
@@ -52,8 +53,8 @@ class PlaneFitter {
     Eigen::Matrix<double, 6, 6> rotation = Eigen::Matrix<double, 6, 6>::Zero();
     rotation.topLeftCorner<3, 3>() = rotation.bottomRightCorner<3, 3>() = R.transpose();
     covariance_ = (rotation * uncertainty.pose_covariance * rotation.transpose()).cast<float>();
-    pose_is_sure_ = covariance_.isZero(0);
-    shared_ = !pose_is_sure_ || camera.systematic > 0 || camera.systematic_scale > 0;
+    pose_is_exact_ = covariance_.isZero(0);
+    shared_ = !pose_is_exact_ || camera.systematic > 0 || camera.systematic_scale > 0;
   }
 
   FramePlanes fit() {
@@ -312,10 +313,10 @@ class PlaneFitter {
     for (int k = 0; k < 3; ++k) plane.n[k] = n[k];
     plane.c = n.dot(z * ray);
     plane.reach = std::min(truncation * along, kCellReach * voxel + kNoiseReach * sigma * along);
-    // No depth is less sure than that its surface lies within the truncation.
+    // However uncertain a depth is, its surface counts as lying within the truncation.
     const float white =
         std::min(sigma * sigma * doubt(i, z, plane.reach / along), truncation * truncation) * along * along;
-    const float common = pose_is_sure_ ? 0 : pose_variance(normal, z * ray) * (to_plane ? 1 : 1 / (cosine * cosine));
+    const float common = pose_is_exact_ ? 0 : pose_variance(normal, z * ray) * (to_plane ? 1 : 1 / (cosine * cosine));
     plane.weight = 1 / (white + common);
     if (shared_) {
       const double systematic = std::hypot(camera_.systematic, camera_.systematic_scale * z);
@@ -373,7 +374,7 @@ class PlaneFitter {
   float slope_limit_ = 0, least_cosine_ = 0;
   int radius_ = 2;
   Eigen::Matrix<float, 6, 6> covariance_;
-  bool pose_is_sure_ = true, shared_ = false;
+  bool pose_is_exact_ = true, shared_ = false;
   std::vector<float> q_, rim_;
   std::vector<RowSums> rows_;
   std::vector<WindowFit> fits_;

@@ -103,6 +103,7 @@ class CoarseImage {
   std::vector<Tile> tiles_;
 };
 
+/// Puts one frame into the map: finds the blocks near its surface, makes room for them, updates their voxels.
 class FrameIntegration {
  public:
   FrameIntegration(SdfGrid& grid, const DepthImage& image, const DepthCamera& camera, const FramePlanes& frame)

@@ -11,7 +11,7 @@ namespace mmgrasp::detail {
 /// kCellEdges[..][0].
 extern const int kCellEdges[12][2];
 
-/// For each pattern (bit k: corner k lies behind the surface) triples of edges, whose crossings make triangles with
+/// Triples of edges for each pattern (bit k: corner k lies behind the surface); their crossings make triangles with
 /// normals towards the front.
 ///
 /// Made from the contours on the faces rather than typed in: on a face with two corners behind the surface across the

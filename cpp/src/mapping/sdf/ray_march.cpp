@@ -66,6 +66,7 @@ class CellAlongRay {
   float mean_[8];
 };
 
+/// Follows one ray through the cells and finds where the mean distance crosses zero from the front.
 class Marcher {
  public:
   Marcher(const SdfGrid& grid, SdfSampler& sampler, const Vector3d& origin, const Vector3d& direction)

@@ -103,9 +103,9 @@ struct SdfGrid {
   /// Throws InvalidInput when another camera has this name.
   void check_camera(const DepthCamera& camera) const;
   void update_correlation(int block);
-  /// For rays; kept until the grid changes. Safe for several threads.
+  /// Cells that the surface crosses, which rays look for; kept until the grid changes. Safe for several threads.
   std::shared_ptr<CrossingCells> crossing_cells() const;
-  /// To be called before the grid changes.
+  /// Must be called before the grid changes.
   void forget_crossing_cells();
   std::size_t bytes() const;
 

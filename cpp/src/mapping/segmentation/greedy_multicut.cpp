@@ -16,6 +16,7 @@ struct Contraction {
   }
 };
 
+/// Contracts the edge of the largest positive weight, again and again; weights of parallel edges add up.
 class Contractor {
  public:
   Contractor(int nodes, const std::vector<SignedEdge>& edges) : around_(nodes), parent_(nodes) {

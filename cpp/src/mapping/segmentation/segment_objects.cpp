@@ -22,6 +22,7 @@ constexpr double kFarthest = 1e6;
 /// On a surface whose points are closer than a cell is wide, most cells have more neighbours than this.
 constexpr int kFewNeighbours = 3;
 
+/// Finds the plane, cuts what rises above it into patches, and joins these to objects.
 class ObjectSegmenter {
  public:
   ObjectSegmenter(const Matrix3Xd& points, const Matrix3Xd& normals, const ObjectSegmentationOptions& options,

@@ -1,34 +1,22 @@
 #include "mapping/segmentation/surface_cells.hpp"
 
-#include <array>
 #include <cmath>
-#include <cstdint>
 #include <unordered_map>
 
+#include "mmgrasp/core/detail/cell_key.hpp"
+
 namespace mmgrasp::detail {
-namespace {
 
 using Eigen::Vector3d;
-using Key = std::array<std::int64_t, 3>;
-
-struct KeyHash {
-  std::size_t operator()(const Key& key) const {
-    std::uint64_t hash = 0;
-    for (const std::int64_t k : key) hash = (hash ^ static_cast<std::uint64_t>(k)) * 0x9E3779B97F4A7C15u;
-    return hash ^ (hash >> 32);
-  }
-};
-
-}  // namespace
 
 SurfaceCells surface_cells(const std::vector<Vector3d>& points, double leaf) {
   SurfaceCells cells;
   cells.leaf = leaf;
-  std::unordered_map<Key, int, KeyHash> cell_at;
-  std::vector<Key> keys;
+  std::unordered_map<CellKey, int, CellKeyHash> cell_at;
+  std::vector<CellKey> keys;
   std::vector<int> count;
   for (const Vector3d& p : points) {
-    Key key;
+    CellKey key;
     for (int k = 0; k < 3; ++k) key[k] = static_cast<std::int64_t>(std::floor(p[k] / leaf));
     const auto [entry, is_new] = cell_at.emplace(key, cells.size());
     if (is_new) {

@@ -41,6 +41,7 @@ struct LocalPlane {
   double residual = detail::kInfinity;  ///< Root mean square distance [m].
 };
 
+/// Fits a plane around every cell; a cell takes the best plane of those around that hold it, so that edges stay sharp.
 class NormalFitter {
  public:
   NormalFitter(const std::vector<Vector3d>& points, const Vector3d& eye, SurfaceCells& cells)

@@ -19,6 +19,8 @@ struct Offer {
   }
 };
 
+/// Grows patches from seeds spread evenly over the surface: a cell goes to the patch that it fits best, by distance and
+/// by how far the surface bends.
 class PatchGrower {
  public:
   PatchGrower(const SurfaceCells& cells, double spacing) : cells_(cells), spacing_(spacing) {

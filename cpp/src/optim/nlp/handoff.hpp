@@ -7,7 +7,8 @@
 
 namespace mmgrasp::detail {
 
-/// Between a solver that cannot be interrupted, in a thread of its own, and its caller, in whose thread callbacks run.
+/// Passes callbacks from a solver that cannot be interrupted, in a thread of its own, to its caller, in whose thread
+/// they run.
 /// The caller may leave while the solver computes: the solver then ends at its next callback.
 class Handoff {
  public:

@@ -47,6 +47,7 @@ bool restart_scotch() {
 }
 constexpr int kScotch = 3;  // MUMPS' ICNTL(7)
 
+/// A NonlinearProblem as Ipopt asks for it; notes the best iterate and ends the solve when its time is up.
 class Adapter : public Ipopt::TNLP {
  public:
   Adapter(NonlinearProblem& problem, const VectorXd& guess, const NlpOptions& options, SolveClock& clock,
@@ -209,6 +210,7 @@ const char* said(Ipopt::ApplicationReturnStatus status) {
   }
 }
 
+/// Interior points. Only one solve runs at a time, because MUMPS keeps process-wide state.
 class IpoptSolver : public NlpSolver {
  public:
   std::string name() const override { return "ipopt"; }

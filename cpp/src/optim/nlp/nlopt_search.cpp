@@ -125,6 +125,7 @@ std::vector<double> step_tolerances(const Bounds& bounds, double tolerance) {
   return out;
 }
 
+/// One of NLopt's derivative-free algorithms, by its entry in the table above.
 class NloptSearch : public DerivativeFreeSolver {
  public:
   explicit NloptSearch(const Algorithm& algorithm) : algorithm_(algorithm) {}

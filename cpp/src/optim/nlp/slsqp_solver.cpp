@@ -161,6 +161,7 @@ struct Run {
   }
 };
 
+/// Sequential least squares on dense matrices, run again from its answer until that stays.
 class SlsqpSolver : public NlpSolver {
  public:
   std::string name() const override { return "slsqp"; }

@@ -12,6 +12,7 @@ struct Site {
   int without_progress = 0;
 };
 
+/// Recruits search around the best sites; sites without progress shrink and are left in the end; scouts draw new ones.
 class Bees : public PopulationSearch {
  public:
   std::string name() const override { return "bees"; }
@@ -46,7 +47,7 @@ class Bees : public PopulationSearch {
           if (++site.without_progress >= o.stagnation_limit && !run.done()) site = scout();
         }
       }
-      // As many evaluations a round as at the beginning: ns - ne nre - (nb - ne) nrb scouts.
+      // Keeps the number of evaluations a round as at the beginning: ns - ne nre - (nb - ne) nrb scouts.
       for (; used < o.population && !run.done(); ++used) sites.push_back(scout());
     }
   }

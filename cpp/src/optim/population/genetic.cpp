@@ -7,6 +7,7 @@
 namespace mmgrasp {
 namespace {
 
+/// Each round keeps the best point and fills the population with children of tournament winners.
 class Genetic : public PopulationSearch {
  public:
   std::string name() const override { return "ga"; }

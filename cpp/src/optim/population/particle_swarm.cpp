@@ -18,6 +18,7 @@ bool is_category(const SearchVariable& v) {
   return v.kind == SearchVariable::Kind::category;
 }
 
+/// Each particle is drawn to its own best point and to the best of those near it.
 class ParticleSwarm : public PopulationSearch {
  public:
   std::string name() const override { return "pso"; }

@@ -17,7 +17,7 @@ namespace {
 constexpr int kPriceSteps = 3000;
 constexpr double kSearchWork = 5e6;     // Entries of the problem checked in search of a better cover.
 constexpr double kShrunk = 0.8;         // Prices are sought again when no more than this share of the sets is left.
-constexpr double kLeastSeconds = 1e-3;  // For CBC, however late it is.
+constexpr double kLeastSeconds = 1e-3;  // CBC gets this much time, however late it is.
 
 double cost_of(const SetCoverProblem& problem, int set) {
   return problem.costs.empty() ? 1.0 : problem.costs[set];
@@ -101,6 +101,7 @@ std::vector<std::vector<int>> components(const SetCoverProblem& problem) {
   return lists;
 }
 
+/// Divides and conquers: reductions, independent components, Lagrangian prices, then branch and bound with CBC.
 class Solver {
  public:
   Solver(double time_limit, const Monitor& monitor) : time_limit_(std::min(time_limit, 1e6)), monitor_(monitor) {}

@@ -6,6 +6,8 @@ namespace mmgrasp::detail {
 
 namespace {
 
+/// Drops sets and elements that another one dominates, and takes sets that alone hold an element, until nothing
+/// changes.
 class Reduction {
  public:
   explicit Reduction(const SetCoverProblem& problem)

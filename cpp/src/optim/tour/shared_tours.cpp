@@ -17,6 +17,7 @@ constexpr double kGain = 1e-9;  // Relative: less is rounding.
 
 using Orders = std::vector<std::vector<int>>;
 
+/// Exact for few stops, by subsets; for more, one tour is cut up and stops change robots while that helps.
 class Sharing {
  public:
   Sharing(const Eigen::MatrixXd& drive_times, const std::vector<double>& stop_times, int robots)
@@ -95,16 +96,15 @@ class Sharing {
     const std::size_t masks = std::size_t{1} << n;
     std::vector<double> ending(masks * n, detail::kInfinity), total(masks, detail::kInfinity);
     total[0] = 0;
-    for (int j = 0; j < n_; ++j)
-      ending[(std::size_t{1} << j) * n + static_cast<std::size_t>(j)] = drive_(start(robot), j) + service(j);
+    for (int j = 0; j < n_; ++j) ending[(std::size_t{1} << j) * n + j] = drive_(start(robot), j) + service(j);
     for (std::size_t mask = 1; mask < masks; ++mask) {
       for (int last = 0; last < n_; ++last) {
-        const double here = ending[mask * n + static_cast<std::size_t>(last)];
+        const double here = ending[mask * n + last];
         if (here == detail::kInfinity) continue;
         total[mask] = std::min(total[mask], here + drive_(last, goal(robot)));
         for (int next = 0; next < n_; ++next) {
           if (mask >> next & 1) continue;
-          double& to = ending[(mask | std::size_t{1} << next) * n + static_cast<std::size_t>(next)];
+          double& to = ending[(mask | std::size_t{1} << next) * n + next];
           to = std::min(to, here + drive_(last, next) + service(next));
         }
       }
@@ -132,10 +132,9 @@ class Sharing {
     std::vector<int> all(n_);
     std::iota(all.begin(), all.end(), 0);
     const std::vector<int> tour = ordered(0, all);
-    std::vector<double> best(static_cast<std::size_t>(n_) + 1, detail::kInfinity);
+    std::vector<double> best(n_ + 1, detail::kInfinity);
     best[0] = 0;
-    std::vector<std::vector<int>> cut(static_cast<std::size_t>(robots_),
-                                      std::vector<int>(static_cast<std::size_t>(n_) + 1, 0));
+    std::vector<std::vector<int>> cut(robots_, std::vector<int>(n_ + 1, 0));
     for (int robot = 0; robot < robots_; ++robot) {
       std::vector<double> with(best.size(), detail::kInfinity);
       for (int end = 0; end <= n_; ++end) {
@@ -165,8 +164,7 @@ class Sharing {
   bool hand_over(Orders& orders) const {
     std::vector<double> durations;
     for (int robot = 0; robot < robots_; ++robot) durations.push_back(duration(robot, orders[robot]));
-    const auto longest =
-        static_cast<std::size_t>(std::max_element(durations.begin(), durations.end()) - durations.begin());
+    const std::size_t longest = std::max_element(durations.begin(), durations.end()) - durations.begin();
     for (std::size_t i = 0; i < orders[longest].size(); ++i) {
       for (std::size_t other = 0; other < orders.size(); ++other) {
         if (other == longest) continue;

@@ -83,7 +83,7 @@ class BranchSearch {
     if (result_.cause == Rejection::self_collision) result_.contact = self_contact_;
   }
 
-  /// For a `near` that reaches the first pose and is not allowed.
+  /// Says why a `near` that reaches the first pose is not allowed.
   void refuse_near() {
     result_.outcome = Outcome::invalid_start;
     result_.cause = checker_.rejection(*near_);
@@ -99,7 +99,7 @@ class BranchSearch {
     JointPath path{{first}};
     std::vector<int> corners{0};
     const double lines = static_cast<double>(poses_.size() - 1);
-    Monitor stop;  // Without progress, which is reported by branches.
+    Monitor stop;  // No progress from within a branch: whole branches are reported.
     stop.stop = monitor_.stop;
     for (std::size_t i = 1; i < poses_.size(); ++i) {
       StraightLineResult line = plan_straight_line(checker_, path.waypoints.back(), poses_[i], options_.line, stop);

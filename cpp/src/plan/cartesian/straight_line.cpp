@@ -37,11 +37,12 @@ class CartesianLine {
   Eigen::Quaterniond rotation_from_, rotation_to_;
 };
 
-/// At least one, and few enough to count in 64 bits.
+/// Number of steps: at least one, and few enough to count in 64 bits.
 std::int64_t step_count(double steps) {
   return static_cast<std::int64_t>(std::clamp(std::ceil(steps), 1.0, 1e15));
 }
 
+/// Follows a straight line of the tool waypoint by waypoint, halving steps whose middle would leave it.
 class LineFollower {
  public:
   LineFollower(CollisionChecker& checker, const Eigen::VectorXd& start, const Pose& goal,

@@ -43,7 +43,7 @@ class CollisionCache {
   std::size_t slot(const Entry& wanted) const {
     std::uint64_t hash = static_cast<std::uint64_t>(wanted.low) << 32 | static_cast<std::uint32_t>(wanted.high);
     hash = (hash ^ static_cast<std::uint64_t>(wanted.subject) * 0xbf58476d1ce4e5b9ull) * 0x9e3779b97f4a7c15ull;
-    std::size_t at = static_cast<std::size_t>(hash >> 32) & (entries_.size() - 1);
+    std::size_t at = hash >> 32 & (entries_.size() - 1);
     for (;;) {
       const Entry& entry = entries_[at];
       if (entry.subject < 0 ||

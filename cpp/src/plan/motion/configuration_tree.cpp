@@ -13,10 +13,10 @@ ConfigurationTree::ConfigurationTree(std::vector<bool> wraps)
 int ConfigurationTree::add(const Eigen::VectorXd& q, int parent) {
   const int node = size();
   const int block = node / kRow, lane = node % kRow;
-  const std::size_t stride = static_cast<std::size_t>(size_) * kRow;
+  const std::size_t stride = size_ * kRow;
   if (lane == 0) rows_.resize(rows_.size() + stride, 1e15f);
   for (Eigen::Index i = 0; i < size_; ++i) {
-    rows_[static_cast<std::size_t>(block) * stride + i * kRow + lane] = static_cast<float>(q[i]);
+    rows_[block * stride + i * kRow + lane] = static_cast<float>(q[i]);
   }
   values_.insert(values_.end(), q.data(), q.data() + size_);
   parents_.push_back(parent);
@@ -25,7 +25,7 @@ int ConfigurationTree::add(const Eigen::VectorXd& q, int parent) {
 
 int ConfigurationTree::nearest(const Eigen::VectorXd& q) const {
   constexpr float kTurn = static_cast<float>(kTwoPi);
-  const std::size_t stride = static_cast<std::size_t>(size_) * kRow;
+  const std::size_t stride = size_ * kRow;
   const float* row = rows_.data();
   // One running minimum a lane: no comparison across lanes before the end.
   float best[kRow];

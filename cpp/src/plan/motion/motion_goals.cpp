@@ -17,6 +17,7 @@ Pose drawn_pose(const ToolRegion& region, int sample, Rng& rng) {
   return region.T_world_region * pose_from_xyz_rpy(xyz, rpy);
 }
 
+/// Turns the goals of a motion into configurations, and counts why others were rejected.
 class GoalSearch {
  public:
   GoalSearch(MotionEdges& edges, const Eigen::VectorXd& start, const MotionOptions& options, Rejections& rejections,

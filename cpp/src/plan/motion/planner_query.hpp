@@ -34,7 +34,7 @@ struct PlannerQuery {
 struct PlannerAnswer {
   bool solved = false;
   bool exhausted = false;                  ///< The planner gave up before its budget was spent.
-  std::vector<Eigen::VectorXd> waypoints;  ///< From start to a goal; values that wrap in [-pi, pi].
+  std::vector<Eigen::VectorXd> waypoints;  ///< Path from the start to a goal; values that wrap in [-pi, pi].
 };
 
 }  // namespace mmgrasp::detail

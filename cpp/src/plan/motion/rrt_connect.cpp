@@ -20,6 +20,8 @@ constexpr double kLeastProgress =
 
 enum class Growth { trapped, advanced, reached };
 
+/// Two trees that grow towards each other (Kuffner and LaValle 2000); the words extend, trapped, advanced and reached
+/// are theirs.
 class Connect {
  public:
   explicit Connect(const PlannerQuery& query)

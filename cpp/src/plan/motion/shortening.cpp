@@ -19,6 +19,7 @@ struct PathPoint {
   Eigen::VectorXd q;
 };
 
+/// Shortens a path in place by shortcuts that are free, of all joints and of one, at random places.
 class Shortener {
  public:
   Shortener(MotionEdges& edges, Waypoints& waypoints, Rng& rng, const ShorteningOptions& options)
@@ -59,7 +60,7 @@ class Shortener {
     waypoints_ = std::move(kept);
   }
 
-  /// From each waypoint straight to the farthest later one with a free edge.
+  /// Goes from each waypoint straight to the farthest later one with a free edge.
   void skip_waypoints() {
     for (std::size_t i = 0; i + 2 < waypoints_.size(); ++i) {
       for (std::size_t j = waypoints_.size() - 1; j > i + 1; --j) {

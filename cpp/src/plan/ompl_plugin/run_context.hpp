@@ -26,7 +26,7 @@ class RunContext {
 
   /// `check` is called at every check of the budget.
   void watch(std::function<void()> check) { on_budget_check_ = std::move(check); }
-  /// For planners whose rounds may take seconds without a check of the budget. `has_path`: whether they have one.
+  /// Watches planners whose rounds may take seconds without a check of the budget. `has_path`: whether they have one.
   void throw_when_stopped(std::function<bool()> has_path) { has_path_ = std::move(has_path); }
   void restart() { draws_ = checks_ = rounds_ = 0; }
   void count_draw() { ++draws_; }

@@ -24,7 +24,7 @@ class CancelCheck {
     own_.progress = monitor.progress;
   }
   const Monitor& monitor() const { return own_; }
-  /// To be called with every step, from any thread. True once the call shall end.
+  /// Must be called with every step, from any thread. True once the call shall end.
   bool stopped() {
     if (steps_++ % kCheckInterval == 0 && over_()) own_.stop.stop();
     return own_.stopped();

@@ -50,7 +50,7 @@ void Roadmap::save(const std::string& path) const {
                       data.options.seed};
   std::string out(kMagic);
   append(out, &header, sizeof header);
-  append(out, data.vertices.data(), sizeof(double) * static_cast<std::size_t>(data.vertices.size()));
+  append(out, data.vertices.data(), sizeof(double) * data.vertices.size());
   for (const auto& [a, b] : data.ends) {
     const std::int32_t pair[2] = {a, b};
     append(out, pair, sizeof pair);
@@ -76,8 +76,8 @@ Roadmap Roadmap::load(const std::string& path, const JointGroup& group) {
     throw IoError(path + ": was made for another robot, other joints or other limits than group '" + group.name() +
                   "' of '" + group.robot().name() + "'");
   }
-  const std::size_t vertex_bytes = sizeof(double) * static_cast<std::size_t>(header.joints * header.vertices);
-  const std::size_t edge_bytes = 2 * sizeof(std::int32_t) * static_cast<std::size_t>(header.edges);
+  const std::size_t vertex_bytes = sizeof(double) * (header.joints * header.vertices);
+  const std::size_t edge_bytes = 2 * sizeof(std::int32_t) * header.edges;
   if (header.joints != group.size() || header.vertices < 0 || header.edges < 0 ||
       body != kStart + sizeof header + vertex_bytes + edge_bytes) {
     throw IoError(path + ": is damaged: sizes do not fit");

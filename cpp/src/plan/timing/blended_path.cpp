@@ -15,8 +15,8 @@ struct Corner {
   double radius = 0;  // 0: sharp.
 };
 
-/// With h half the turn: an arc of radius r touches both edges r tan(h) from the corner and misses it by r (1 / cos(h)
-/// - 1).
+/// The widest arc that `room` on either edge and `deviation` from the corner allow. With h half the turn, an arc of
+/// radius r touches both edges r tan(h) from the corner and misses it by r (1 / cos(h) - 1).
 Corner round_corner(const Eigen::VectorXd& before, const Eigen::VectorXd& after, double room, double deviation) {
   Corner corner;
   // Half-angle from chords, exact for small and for nearly opposite directions.

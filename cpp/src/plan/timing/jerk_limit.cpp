@@ -139,13 +139,13 @@ bool keeps_jerk(const Cubics& motion, double window, const Eigen::VectorXd& jerk
   return true;
 }
 
-/// Under such a window, samples that are a fixed part of it apart would be far too many.
+/// Whether samples that are a fixed part of the window apart would be far too many.
 bool is_short(double window, double period) {
   return 2 * window < period;
 }
 
-/// From 0 to the average's end. Between the times at which an end of the window meets a sample, its jerk is linear:
-/// under a short window samples crowd around these times alone.
+/// Times of samples from 0 to the average's end. Between the times at which an end of the window meets a sample, its
+/// jerk is linear: under a short window samples crowd around these times alone.
 std::vector<double> sample_times(const Cubics& motion, double window, double period) {
   const double duration = motion.duration() + window;
   std::vector<double> events{duration};

@@ -106,7 +106,7 @@ PathTiming::Bounds PathTiming::bounds(std::size_t k, double next_limit) const {
   bounds.upper.reserve(2 * slope0.size() + 1);
   for (Eigen::Index i = 0; i < slope0.size(); ++i) {
     bounds.add(slope0[i], bend0[i], acceleration_limits_[i]);
-    // At the far end x has become x + 2 step u.
+    // The limit at the far end of the interval, where x has become x + 2 step u.
     if (segment.radius > 0) bounds.add(slope1[i] + bend1[i] * two_step, bend1[i], acceleration_limits_[i]);
   }
   bounds.lower.push_back({0, -1 / two_step});

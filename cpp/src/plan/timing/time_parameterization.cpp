@@ -18,7 +18,7 @@ using Waypoints = std::vector<Eigen::VectorXd>;
 
 constexpr double kPlannedShare = 0.999;      // Share of the limits planned for: cubics between samples need the rest.
 constexpr double kSmallestDeviation = 1e-5;  // Corners that must be passed closer than this [rad] are stopped at.
-constexpr double kLeastAccelerationShare = 0.05;  // Under jerk limits, shares of the acceleration limits from 1 down to
+constexpr double kLeastAccelerationShare = 0.05;  // With jerk limits, shares of the acceleration limits from 1 down to
 constexpr double kShareStep = 0.7;                // this one are tried, each this many times the one before.
 constexpr double kRounding = 1e-9;                // Limit overshoot that is nothing but rounding [rad or m].
 constexpr double kSlack = 1e-6;                   // Relative slack of the final check.
@@ -106,7 +106,8 @@ class TimedPath {
     return detail::sample_trajectory(timing, velocity_limits_, accelerations, period_);
   }
 
-  /// Under tight jerk limits a motion with lower accelerations may take less time.
+  /// The quickest of motions under several shares of the acceleration limits: under tight jerk limits lower
+  /// accelerations may take less time.
   JointTrajectory smoothest(const detail::BlendedPath& path) const {
     JointTrajectory best;
     for (double share = 1; share > kLeastAccelerationShare; share *= kShareStep) {

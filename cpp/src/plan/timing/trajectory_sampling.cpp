@@ -33,6 +33,7 @@ struct Sample {
   State state;
 };
 
+/// Samples a timed path so densely that cubics between the samples keep the limits, too.
 class Sampler {
  public:
   Sampler(const PathTiming& timing, const Eigen::VectorXd& velocity_limits, const Eigen::VectorXd& acceleration_limits)
@@ -82,11 +83,11 @@ class Sampler {
   void append(Sample sample) {
     end_if_stopped(timing_.stop());
     const Sample& previous = samples_.back();
-    const double gap = sample.time - previous.time;
+    const double interval = sample.time - previous.time;
     const Load load = hermite_load(previous, sample);
     const bool beyond = std::max(load.velocity, load.acceleration) > 1;
-    if ((beyond || hides_acceleration(previous, sample)) && gap > kSmallestSplit) {
-      append(previous.time + 0.5 * gap);
+    if ((beyond || hides_acceleration(previous, sample)) && interval > kSmallestSplit) {
+      append(previous.time + 0.5 * interval);
       append(std::move(sample));
       return;
     }

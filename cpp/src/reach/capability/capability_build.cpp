@@ -21,6 +21,7 @@ constexpr int kFewIterations = 25;
 constexpr int kFewShare = 4;          // of the sampled values of free joints, every fourth is tried everywhere
 constexpr double kFirstShare = 0.75;  // of the time, roughly: for the progress report
 
+/// The three passes over all voxels and poses, and the configurations that they found.
 class Builder {
  public:
   Builder(const JointGroup& arm, const World& world, const Monitor& monitor, Data& data, const CapabilityMap* within)
@@ -32,7 +33,7 @@ class Builder {
         table_(arm, data.options.samples),
         few_(std::max(1, table_.size() / kFewShare)),
         state_(data.classes.size(), State{}),
-        found_(data.classes.size() * static_cast<std::size_t>(arm.size())) {
+        found_(data.classes.size() * arm.size()) {
     CheckerOptions checking;
     checking.padding = data.options.padding;
     const CollisionChecker checker(arm, world, checking);
@@ -46,7 +47,7 @@ class Builder {
     if (!table_.known() && !build_seeds()) return false;
     const Monitor first{monitor_.stop,
                         [&](const std::string&, double share) { monitor_.report(kStage, kFirstShare * share); }};
-    const auto columns = static_cast<std::size_t>(data_.shape[0]) * static_cast<std::size_t>(data_.shape[1]);
+    const std::size_t columns = static_cast<std::size_t>(data_.shape[0]) * data_.shape[1];
     if (!parallel_for(
             columns, threads_, [&](std::size_t column, int worker) { fill_column(column, searches_[worker]); }, first,
             kStage))
@@ -107,8 +108,7 @@ class Builder {
   Pose target(std::size_t at) const { return arm_.T_world_root() * data_.pose(at); }
 
   Eigen::VectorXd configuration(std::size_t at) const {
-    return Eigen::Map<const Eigen::VectorXf>(found_.data() + at * static_cast<std::size_t>(arm_.size()), arm_.size())
-        .cast<double>();
+    return Eigen::Map<const Eigen::VectorXf>(found_.data() + at * arm_.size(), arm_.size()).cast<double>();
   }
 
   void keep(std::size_t at, const Eigen::VectorXf& q, int sweep) {
@@ -118,7 +118,7 @@ class Builder {
   }
 
   void fill_column(std::size_t column, detail::PoseSearch& search) {
-    const auto height = static_cast<std::size_t>(data_.shape[2]), poses = data_.poses();
+    const std::size_t height = data_.shape[2], poses = data_.poses();
     std::vector<int> last(poses, 0);  // the sample that solved the pose below
     for (std::size_t z = 0; z < height && !monitor_.stopped(); ++z) {
       for (std::size_t k = 0; k < poses; ++k) {
@@ -270,7 +270,7 @@ CapabilityMap run(std::shared_ptr<Data> data, const JointGroup& arm, const World
   data->arm_key = detail::capability_arm_key(arm);
   data->joints = arm.size();
   data->lay_out();
-  data->classes.assign(static_cast<std::size_t>(data->voxel_count()) * data->poses(), 0);
+  data->classes.assign(data->voxel_count() * data->poses(), 0);
   if (Builder(arm, world, monitor, *data, within).run()) return CapabilityMap(std::move(data));
   auto empty = std::make_shared<Data>();
   empty->options = data->options;

@@ -183,12 +183,12 @@ Eigen::Vector3d CapabilityMap::centre(std::int64_t voxel) const {
 
 Pose CapabilityMap::tool_pose(std::int64_t voxel, int pose) const {
   check_place(*this, voxel, pose);
-  return data_->pose(static_cast<std::size_t>(voxel) * data_->poses() + pose);
+  return data_->pose(voxel * data_->poses() + pose);
 }
 
 Rejection CapabilityMap::classified(std::int64_t voxel, int pose) const {
   check_place(*this, voxel, pose);
-  return static_cast<Rejection>(data_->classes[static_cast<std::size_t>(voxel) * data_->poses() + pose]);
+  return static_cast<Rejection>(data_->classes[voxel * data_->poses() + pose]);
 }
 
 Eigen::VectorXd CapabilityMap::configuration(std::int64_t voxel, int pose) const {
@@ -233,7 +233,7 @@ double CapabilityMap::score(const Poses& T_world_tip, const Pose& T_world_root, 
     for (std::size_t k = 0; k < data_->poses(); ++k) {
       if ((data_->tool_poses[k].linear() * approach).dot(direction) < std::cos(cone)) continue;
       ++near;
-      reached += data_->classes[static_cast<std::size_t>(at) * data_->poses() + k] == 0;
+      reached += data_->classes[at * data_->poses() + k] == 0;
     }
     if (near > 0) sum += static_cast<double>(reached) / near;
   }

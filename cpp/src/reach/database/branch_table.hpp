@@ -30,7 +30,7 @@ class BranchTable {
   const LockedArm& operator[](int sample) const { return arms_[sample]; }
   /// Samples below `count`, nearest to `sample` first (itself included).
   const std::vector<int>& order(int sample) const { return orders_[sample]; }
-  /// With the locked joints where they are in q.
+  /// The arm with its locked joints where they are in q.
   LockedArm lock(const Eigen::VectorXd& q) const;
 
   /// Calls use(q, outside) for every branch that puts the tip at `target` until it says true, and returns whether it

@@ -33,7 +33,7 @@ class CellCounter {
   /// The key's slot, or the free one where it belongs. The capacity is a power of two.
   std::size_t find(std::uint64_t key) const {
     const std::size_t mask = slots_.size() - 1;
-    std::size_t slot = static_cast<std::size_t>((key * 0x9e3779b97f4a7c15ull) >> 20) & mask;
+    std::size_t slot = (key * 0x9e3779b97f4a7c15ull) >> 20 & mask;
     while (slots_[slot].count != 0 && slots_[slot].key != key) slot = (slot + 1) & mask;
     return slot;
   }

@@ -72,7 +72,8 @@ class Builder {
  private:
   Monitor silent() const { return Monitor{monitor_.stop, {}}; }
 
-  /// From the first blocks, so that every sample is measured against the same threshold.
+  /// Takes the largest manipulability from the first blocks, so that every sample is measured against the same
+  /// threshold.
   bool estimate_manipulability() {
     if (options_.min_manipulability <= 0 && options_.thinning <= 0) return !monitor_.stopped();
     std::vector<double> largest(std::min(kManipulabilityBlocks, blocks_), 0);
@@ -133,8 +134,8 @@ class Builder {
     detail::OwnArrays& own = data.own;
     own.position_first.assign(1, 0);
     own.cell_first.assign(1, 0);
-    if (writer == nullptr) own.configurations.reserve(merging.record_count() * static_cast<std::size_t>(arm_.size()));
-    const std::size_t parts = merging.part_count(), batch = 4 * static_cast<std::size_t>(threads_);
+    if (writer == nullptr) own.configurations.reserve(merging.record_count() * arm_.size());
+    const std::size_t parts = merging.part_count(), batch = 4 * threads_;
     std::vector<detail::MergedCells> merged(batch);
     for (std::size_t first = 0; first < parts; first += batch) {
       const std::size_t count = std::min(batch, parts - first);
@@ -289,8 +290,7 @@ ReachDatabase ReachDatabase::build_to(const std::string& folder, const JointGrou
       const auto rows = static_cast<std::uint64_t>(data->size());
       layout.shape[0] = rows;
       data->files.push_back(std::make_unique<detail::CheckedFile>(file, layout, writer.checksums()));
-      data->configurations = {reinterpret_cast<const std::uint16_t*>(data->files[0]->payload()),
-                              rows * static_cast<std::size_t>(arm.size())};
+      data->configurations = {reinterpret_cast<const std::uint16_t*>(data->files[0]->payload()), rows * arm.size()};
       data->complete();
       data->measure();
       detail::write_database(*data, written, path, &writer);

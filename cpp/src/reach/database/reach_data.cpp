@@ -117,7 +117,7 @@ void ReachDatabase::Data::fill_poses(std::size_t position) const {
     const detail::CellIndex cell(positions[3 * position], positions[3 * position + 1], positions[3 * position + 2]);
     for (std::size_t first = begin; first < end; first += kBlock) {
       const std::size_t count = std::min(kBlock, end - first);
-      arm.tool_poses(numbers + (first - begin) * static_cast<std::size_t>(joints), count, poses.data());
+      arm.tool_poses(numbers + (first - begin) * joints, count, poses.data());
       for (std::size_t i = 0; i < count; ++i)
         poses_[first + i] = detail::StoredPose(poses[i], cell, options.position_cell);
     }

@@ -116,7 +116,7 @@ Eigen::MatrixXd ReachDatabase::cell(const Pose& T_base_tip) const {
   const auto [begin, end] = voxel(T_base_tip);
   Eigen::MatrixXd out(data_->joints, end - begin);
   if (begin == end) return out;
-  const auto first = static_cast<std::size_t>(begin), last = static_cast<std::size_t>(end);
+  const std::size_t first = begin, last = end;
   data_->arm.decode(data_->stored(first, last), last - first, out.data());
   return out;
 }

@@ -54,7 +54,7 @@ std::string file_in(const std::string& folder, const char* name) {
 void check_tables(const Data& data, const std::string& path) {
   const std::size_t positions = data.position_count(), cells = data.cell_count();
   bool sound = data.position_first[0] == 0 && data.position_first[positions] == cells && data.cell_first[0] == 0 &&
-               data.configurations.count == data.size() * static_cast<std::size_t>(data.joints);
+               data.configurations.count == data.size() * data.joints;
   for (std::size_t i = 0; i < positions; ++i) sound = sound && data.position_first[i] < data.position_first[i + 1];
   for (std::size_t i = 0; i < cells; ++i) sound = sound && data.cell_first[i] < data.cell_first[i + 1];
   for (std::size_t i = 0; i < 3 * positions; ++i)

@@ -46,7 +46,7 @@ class Nearest {
 /// A non-empty position cell next to the query's.
 struct PositionCell {
   std::int64_t index;
-  float distance;         ///< From the query to where the cell begins [cells].
+  float distance;         ///< How far from the query the cell begins [cells].
   Eigen::Vector3f query;  ///< The query from the cell's lower corner [cells].
 };
 

@@ -12,7 +12,7 @@ class SeededIk {
   /// Throws InvalidInput.
   SeededIk(const ReachDatabase& database, const JointGroup& arm, const IkOptions& options);
 
-  const JointGroup& arm() const { return arm_; }  ///< With its root at the origin.
+  const JointGroup& arm() const { return arm_; }  ///< The arm, its root at the origin.
   /// Looks up to `count` starts up, nearest first; returns how many there are.
   int seed(const Pose& T_base_tip, int count);
   /// Descends from a start; true when q() is exact and within limits, confirmed by forward kinematics.

@@ -136,7 +136,7 @@ void StoredArm::tool_poses(const std::uint16_t* stored, std::size_t count, Pose*
 void StoredArm::tool_poses_of(const double* q, std::size_t count, Pose* poses) const {
   static_assert(sizeof(Pose) == 16 * sizeof(double), "poses must lie next to each other");
   const KinematicsKernels& kernels = kinematics_kernels();
-  const auto lanes = static_cast<std::size_t>(kernels.lanes), n = joints.size();
+  const std::size_t lanes = kernels.lanes, n = joints.size();
   const std::size_t whole = count / lanes, rest = count % lanes;
   const Chain& chain_tables = tables_->chain;
   if (whole > 0)

@@ -53,7 +53,7 @@ class Layer {
     }
   }
 
-  /// For a tool at (x, y) from the base, seen from it.
+  /// Stored configurations whose tool is at (x, y), seen from the base.
   std::uint32_t at(double x, double y) const {
     const auto i = static_cast<std::int64_t>(std::floor(x / data_.options.position_cell)) - low_[0];
     const auto j = static_cast<std::int64_t>(std::floor(y / data_.options.position_cell)) - low_[1];
@@ -182,6 +182,7 @@ class Examiner {
   Eigen::Vector3d stands_ = Eigen::Vector3d::Constant(std::nan(""));
 };
 
+/// Lets the database vote for base poses, checks the best exactly and improves the best of these by smaller steps.
 class PlacementSearch {
  public:
   PlacementSearch(const ReachDatabase& database, const JointGroup& arm, const Poses& targets,

@@ -16,7 +16,7 @@ Eigen::Matrix3d turn_about(const Eigen::Vector3d& axis, double angle) {
 
 /// A motion about or along z of its own frame.
 struct AlongZ {
-  Eigen::Matrix3d R;  ///< From the frame after the motion before.
+  Eigen::Matrix3d R;  ///< Rotation from the frame after the motion before.
   Eigen::Vector3d p;
   Motion motion = Motion::revolute;
   Drive drive;
@@ -96,7 +96,7 @@ void bound_tip_motion(const Path& path, GroupModel& model) {
     lever += travel(model, *motion) + motion->p.norm();
   }
   if (model.has_base) {
-    speed[0] = 1;  // With y, at right angles to it.
+    speed[0] = 1;  // Together with y, at right angles to it.
     speed[2] = lever;
     turn[2] = 1;
   }

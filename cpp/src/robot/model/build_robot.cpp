@@ -203,20 +203,7 @@ std::shared_ptr<Robot::Data> build_robot(const RobotParts& parts) {
   const std::vector<int> order = breadth_first(parts, tree);
 
   auto data = std::make_shared<Robot::Data>();
-  data->name = parts.name;
-  data->base = parts.base;
-  data->base_limits = parts.base_limits;
-  data->report = parts.report;
-  data->groups = parts.groups;
-  data->end_effectors = parts.end_effectors;
-  data->group_states = parts.group_states;
-  data->passive_joints = parts.passive_joints;
-  data->virtual_joints = parts.virtual_joints;
-  data->has_srdf = parts.has_srdf;
-  data->inertials = parts.inertials;
-  data->shapes_left_out = parts.shapes_left_out;
-  data->urdfs = parts.urdfs;
-  data->added_links = parts.added_links;
+  static_cast<RobotContent&>(*data) = parts;
   for (const int old_link : order) {
     Link link = parts.links[old_link];
     const int index = static_cast<int>(data->links.size());
@@ -247,10 +234,8 @@ std::shared_ptr<Robot::Data> build_robot(const RobotParts& parts) {
 
 RobotParts to_parts(const Robot::Data& data) {
   RobotParts parts;
-  parts.name = data.name;
+  static_cast<RobotContent&>(parts) = data;
   parts.origin = "robot \"" + data.name + "\"";
-  parts.base = data.base;
-  parts.base_limits = data.base_limits;
   parts.links = data.links;
   for (const Joint& joint : data.joints) {
     NamedJoint named;
@@ -261,17 +246,6 @@ RobotParts to_parts(const Robot::Data& data) {
     named.place = parts.origin + ": joint \"" + joint.name + "\"";
     parts.joints.push_back(std::move(named));
   }
-  parts.report = data.report;
-  parts.groups = data.groups;
-  parts.end_effectors = data.end_effectors;
-  parts.group_states = data.group_states;
-  parts.passive_joints = data.passive_joints;
-  parts.virtual_joints = data.virtual_joints;
-  parts.has_srdf = data.has_srdf;
-  parts.inertials = data.inertials;
-  parts.shapes_left_out = data.shapes_left_out;
-  parts.urdfs = data.urdfs;
-  parts.added_links = data.added_links;
   for (const auto& [pair, reason] : data.disabled_pairs) {
     const std::string& a = data.links[pair.first].name;
     const std::string& b = data.links[pair.second].name;

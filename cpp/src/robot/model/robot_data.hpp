@@ -20,12 +20,13 @@ struct VirtualJoint {
   std::string name, type, parent_frame, child_link;
 };
 
-struct Robot::Data {
+namespace detail {
+
+/// What is known of a robot and does not depend on how its links and joints are found: by index or by name.
+struct RobotContent {
   std::string name;
   BaseKind base = BaseKind::fixed;
   BaseLimits base_limits;
-  std::vector<Link> links;  // breadth first; joint i carries link i + 1
-  std::vector<Joint> joints;
   RobotReport report;
   std::vector<GroupDescription> groups;
   std::vector<EndEffectorDescription> end_effectors;
@@ -33,11 +34,18 @@ struct Robot::Data {
   std::vector<std::string> passive_joints;
   std::vector<VirtualJoint> virtual_joints;
   bool has_srdf = false;
-  std::map<std::pair<int, int>, DisabledReason> disabled_pairs;
   std::map<std::string, std::string> inertials;  // link -> its <inertial> as XML: nothing here computes with it
   std::set<std::string> shapes_left_out;  // links whose meshes were not loaded: without shapes here, but not in truth
   std::vector<UrdfSource> urdfs;          // what it was read from
   std::vector<AddedLink> added_links;     // and what came from no URDF
+};
+
+}  // namespace detail
+
+struct Robot::Data : detail::RobotContent {
+  std::vector<Link> links;  // breadth first; joint i carries link i + 1
+  std::vector<Joint> joints;
+  std::map<std::pair<int, int>, DisabledReason> disabled_pairs;
 
   // Derived from the above.
   std::unordered_map<std::string, int> link_by_name;
@@ -58,25 +66,11 @@ struct NamedJoint {
 
 /// A robot by names: the common form of a parsed file, a mounted pair and an added link. build_robot turns it into
 /// indices, after checking that it is one tree.
-struct RobotParts {
-  std::string name;
-  std::string origin;  // file, for messages
-  BaseKind base = BaseKind::fixed;
-  BaseLimits base_limits;
+struct RobotParts : RobotContent {
+  std::string origin;       // file, for messages
   std::vector<Link> links;  // indices unset
   std::vector<NamedJoint> joints;
-  RobotReport report;
-  std::vector<GroupDescription> groups;
-  std::vector<EndEffectorDescription> end_effectors;
-  GroupStates group_states;
-  std::vector<std::string> passive_joints;
-  std::vector<VirtualJoint> virtual_joints;
-  bool has_srdf = false;
   NamedPairs disabled_pairs;
-  std::map<std::string, std::string> inertials;
-  std::set<std::string> shapes_left_out;
-  std::vector<UrdfSource> urdfs;
-  std::vector<AddedLink> added_links;
 };
 
 /// Orders links and joints breadth first, resolves mimic joints, numbers values, disables pairs that cannot collide in

@@ -39,6 +39,7 @@ DisabledReason reason_from(const std::string& text) {
   return DisabledReason::user;
 }
 
+/// Reads the parts of an SRDF one after another into a robot; what names things that the robot lacks is a warning.
 class SrdfReader {
  public:
   SrdfReader(const std::string& text, const std::string& origin, Robot::Data& data) : xml_(text, origin), data_(data) {}

@@ -19,6 +19,7 @@ constexpr double kFallbackVelocity = 1.0;  // [rad/s] or [m/s], for joints whose
 constexpr std::array<JointType, 6> kJointTypes = {JointType::fixed,     JointType::revolute, JointType::continuous,
                                                   JointType::prismatic, JointType::planar,   JointType::floating};
 
+/// Reads a URDF's links and joints by name; build_robot() makes the tree of them.
 class UrdfReader {
  public:
   UrdfReader(const std::string& text, const std::string& origin) : xml_(text, origin) {}

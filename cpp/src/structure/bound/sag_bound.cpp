@@ -95,7 +95,8 @@ LinearForm SagBound::below(int member, double middle, double half) const {
     const Eigen::Matrix<double, 12, 1> flat = places[k] * at_t;
     now[k] = Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(flat.data());
   }
-  // At each pose the place that moves most in the middle, along its direction there: never more than the largest.
+  // Looks at the place that moves most in the middle of the box, along its direction there: never more than the
+  // largest.
   std::vector<Eigen::Matrix<double, 1, 12>> weights(places.size(), Eigen::Matrix<double, 1, 12>::Zero());
   for (const Vector3d& g : gravity_) {
     Eigen::Vector4d load;

@@ -17,7 +17,7 @@ class MMGRASP_EXPORT AttachedObject {
   explicit AttachedObject(const ObjectPathProblem& problem) : problem_(problem) {}
 
   AttachedChecker& hold(const Grasp& grasp);
-  /// With the fingers of the last grasp held.
+  /// The arm, its fingers as the last grasp holds them.
   const JointGroup& group() const { return now_->first; }
   /// How far any point moves with each joint at most, with the last grasp held [m/rad].
   const Eigen::VectorXd& levers();

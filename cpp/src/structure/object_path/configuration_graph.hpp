@@ -17,7 +17,7 @@ class MMGRASP_EXPORT ConfigurationGraph {
   /// A graph without edges, with so many vertices in each layer.
   explicit ConfigurationGraph(const std::vector<int>& sizes);
 
-  /// From a vertex of `layer` to one of the next. Edges of a layer must come with `to` ascending.
+  /// Joins a vertex of `layer` to one of the next. Edges of a layer must come with `to` ascending.
   void add_edge(std::size_t layer, int from, int to, double cost);
   void remove_edge(std::size_t layer, int from, int to);
   void remove_vertex(std::size_t layer, int vertex) { alive_[layer][vertex] = false; }

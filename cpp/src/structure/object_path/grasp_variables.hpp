@@ -14,7 +14,7 @@ class MMGRASP_EXPORT GraspVariables {
   GraspVariables(const Pipe& pipe, const PipeGraspOptions& grasp);
 
   std::vector<SearchVariable> variables() const;
-  const std::vector<int>& sections() const { return sections_; }  ///< That the hand fits.
+  const std::vector<int>& sections() const { return sections_; }  ///< Those that the hand fits.
   /// Longest distance on a section.
   double room(int usable) const { return room_[usable]; }
   Grasp grasp(const Eigen::VectorXd& x) const;

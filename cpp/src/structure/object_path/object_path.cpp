@@ -95,7 +95,7 @@ struct ObjectPathEvaluator::Impl {
   ObjectPathOptions options;
   detail::AttachedObject held{problem};
   EdgeOptions edge;
-  std::map<const JointGroup*, detail::PathConfigurations> solvers;  ///< For each opening of the fingers.
+  std::map<const JointGroup*, detail::PathConfigurations> solvers;  ///< One for each opening of the fingers.
   const JointGroup* group = nullptr;
   detail::PathConfigurations* solver = nullptr;
   detail::AttachedChecker* checker = nullptr;

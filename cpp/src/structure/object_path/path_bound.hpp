@@ -30,7 +30,7 @@ class MMGRASP_EXPORT BoxGraph {
   Bound bound() const;
   const FormConfiguration& configuration(std::size_t pose, int branch) const { return layers_[pose].q[branch]; }
   bool alive(std::size_t pose, int branch) const { return layers_[pose].alive[branch] != 0; }
-  /// To be called for what cannot be anywhere in the box.
+  /// Leaves out a configuration that no grasp of the box can have.
   void exclude(std::size_t pose, int branch) { layers_[pose].alive[branch] = 0; }
 
  private:

@@ -43,7 +43,7 @@ class PathConfigurations {
 
   const JointGroup& group_;
   const ObjectPathOptions& options_;
-  std::optional<JointGroup> arm_group_;  ///< Without the base, its root at the identity.
+  std::optional<JointGroup> arm_group_;  ///< The arm without the base, its root at the identity.
   std::optional<ClosedFormSolver> arm_;
   std::optional<WholeTurns> turns_;
   Eigen::VectorXd middle_;

@@ -19,7 +19,7 @@ class PlatformEnd {
   /// Draws once: an IK search from a remembered posture or from anywhere near, then along the solutions when view or
   /// singularity asks for it. True when it gave a valid configuration, which joins `found`.
   bool draw(const IkSeedDatabase* database);
-  /// From one start; `fixed_base` keeps the start's base pose exactly. Counts as a draw.
+  /// Searches from one start; `fixed_base` keeps its base pose exactly. Counts as a draw.
   std::optional<Eigen::VectorXd> solve(const Eigen::VectorXd& start, bool fixed_base);
   /// Moves q (valid) along the solutions of its pose towards a base pose; stays valid.
   Eigen::VectorXd drawn_towards(const Eigen::VectorXd& q, const Eigen::Vector3d& base, double turn_weight);

@@ -29,7 +29,7 @@ struct BasePoseEvaluator::Impl {
   CollisionChecker at_rest;
   GraspSearch search;
 
-  /// From tables whose blocked grasps are to be checked in this world.
+  /// Makes an evaluator, and checks in this world which grasps of the tables are blocked.
   static std::unique_ptr<Impl> make(GraspSearchTables tables, const ReachDatabase& database,
                                     std::vector<PartRef> in_place, const World& world) {
     const PartSupplyProblem& problem = *tables.problem;

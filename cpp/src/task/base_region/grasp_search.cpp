@@ -80,7 +80,7 @@ const GraspSearch::PlacedGrasp& GraspSearch::placed(double heading, const Part& 
   return result;
 }
 
-/// From one seed to the pose, in `q_`. True when it arrives; `cause` is then what the checker says.
+/// Solves from one seed to the pose, in `q_`. True when it arrives; `cause` is then what the checker says.
 bool GraspSearch::solve_from(const double* seed, const Pose& T_base_hand, CollisionChecker& checker, Rejection& cause) {
   q_ = Eigen::Map<const Eigen::VectorXd>(seed, tables_->arm.size());
   if (!ik_.solve(T_base_hand, q_)) return false;

@@ -16,7 +16,7 @@ namespace mmgrasp::detail {
 /// What all searches of one problem share, whatever the thread.
 struct GraspSearchTables {
   const PartSupplyProblem* problem;
-  JointGroup arm;  ///< With its root in the origin.
+  JointGroup arm;  ///< The arm, its root at the origin.
   std::shared_ptr<const IkSeedGrid> seeds;
   GraspTable grasps;
 };

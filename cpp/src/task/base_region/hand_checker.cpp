@@ -40,19 +40,19 @@ CollisionChecker hand_checker(const PartSupplyProblem& problem, double opening, 
   }
   // A body without shapes that can be put anywhere holds the hand.
   static const Robot carrier = Robot::from_strings(
-      "<robot name='carrier'><link name='root'/><link name='tcp'/><joint name='turn' type='revolute'><parent "
-      "link='root'/><child link='tcp'/><axis xyz='0 0 1'/><limit lower='-1' upper='1' velocity='1' effort='1'/>"
+      "<robot name='carrier'><link name='root'/><link name='tool'/><joint name='turn' type='revolute'><parent "
+      "link='root'/><child link='tool'/><axis xyz='0 0 1'/><limit lower='-1' upper='1' velocity='1' effort='1'/>"
       "</joint></robot>");
   World scene = objects_never_touched(arm.robot(), world, links);
   if (!hand.shapes.empty()) {
     std::string name = "hand";
     while (scene.has(name)) name += "'";
     scene.add(name, std::move(hand));
-    scene.attach(name, "tcp", Pose::Identity());
+    scene.attach(name, "tool", Pose::Identity());
   }
   CheckerOptions scene_only;
   scene_only.check_self = false;
-  return CollisionChecker(carrier.chain("root", "tcp"), scene, scene_only);
+  return CollisionChecker(carrier.chain("root", "tool"), scene, scene_only);
 }
 
 }  // namespace mmgrasp::detail

@@ -8,8 +8,7 @@ HomeMap::HomeMap(const BaseGrid& grid)
     : nx_(grid.nx),
       centres_(grid.headings.size(), std::vector<std::uint8_t>(static_cast<std::size_t>(grid.nx) * grid.ny, unknown)),
       corners_(grid.headings.size(),
-               std::vector<std::uint8_t>(static_cast<std::size_t>(grid.nx + 1) * static_cast<std::size_t>(grid.ny + 1),
-                                         unknown)) {}
+               std::vector<std::uint8_t>(static_cast<std::size_t>(grid.nx + 1) * (grid.ny + 1), unknown)) {}
 
 void HomeMap::forget_collisions() {
   for (auto* layers : {&centres_, &corners_}) {

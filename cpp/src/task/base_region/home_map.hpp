@@ -14,7 +14,7 @@ class HomeMap {
   enum State : std::uint8_t { unknown, free, in_collision, queried };
 
   explicit HomeMap(const BaseGrid& grid);
-  /// At the centre of a cell, or at its lower corner (cells up to nx, ny then).
+  /// State at the centre of a cell, or at its lower corner (cells up to nx, ny then).
   std::uint8_t& at(int heading, bool corner, int ix, int iy) {
     return (corner ? corners_ : centres_)[heading][index(corner, ix, iy)];
   }

@@ -31,7 +31,7 @@ bool PartCells::operator[](std::size_t cell) const {
             heading = static_cast<int>(cell / row / ny_);
   for (const Window& w : windows_) {
     if (w.heading != heading || ix < w.x0 || iy < w.y0 || ix >= w.x0 + w.nx || iy >= w.y0 + w.ny) continue;
-    return w.flags[static_cast<std::size_t>(iy - w.y0) * static_cast<std::size_t>(w.nx) + ix - w.x0] != 0;
+    return w.flags[static_cast<std::size_t>(iy - w.y0) * w.nx + ix - w.x0] != 0;
   }
   return false;
 }
@@ -46,8 +46,7 @@ CellMask PartCells::mask() const {
   CellMask cells(size_, 0);
   for (const Window& w : windows_) {
     for (int iy = 0; iy < w.ny; ++iy) {
-      const std::size_t row =
-          (static_cast<std::size_t>(w.heading) * ny_ + w.y0 + iy) * static_cast<std::size_t>(nx_) + w.x0;
+      const std::size_t row = (static_cast<std::size_t>(w.heading) * ny_ + w.y0 + iy) * nx_ + w.x0;
       std::copy_n(w.flags.begin() + static_cast<std::ptrdiff_t>(iy) * w.nx, w.nx,
                   cells.begin() + static_cast<std::ptrdiff_t>(row));
     }

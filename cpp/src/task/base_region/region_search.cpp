@@ -55,7 +55,7 @@ void RegionSearch::clone_evaluators(const BasePoseEvaluator& evaluator) {
   for (int i = 0; i < threads_; ++i) evaluators_.push_back(evaluator.clone());
 }
 
-/// At the tray's own headings; with `served` at all others.
+/// Adds what is to be searched for a tray: its own headings; with `served` all others.
 void RegionSearch::add_windows(TrayId id, const ReachDatabase& database, const CellMask* served) {
   const Tray& tray = tray_of(*problem_, id);
   const std::vector<int> targets = parts(id);

@@ -52,7 +52,7 @@ Eigen::Vector3d TrayWindow::pose(const BaseGrid& grid, bool corner, int ix, int 
 
 void TrayWindow::begin() {
   if (begun()) return;
-  good_anywhere_.assign(static_cast<std::size_t>(nx_ + 1) * static_cast<std::size_t>(ny_ + 1), 0);
+  good_anywhere_.assign(static_cast<std::size_t>(nx_ + 1) * (ny_ + 1), 0);
   centres_.assign(parts_.size(), good_anywhere_);
   corners_ = centres_;
 }

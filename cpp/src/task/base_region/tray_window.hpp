@@ -46,9 +46,9 @@ class TrayWindow {
   void forget();
   bool begun() const { return !good_anywhere_.empty(); }
 
-  /// To be tried for a part: centres in range, and corners of cells whose centre is good for it.
+  /// Whether a base pose is to be tried for a part: centres in range, and corners of cells whose centre is good for it.
   bool wanted(std::size_t slot, bool corner, int ix, int iy) const;
-  /// To be tried for any part, as far as the centres tell.
+  /// Whether it is to be tried for any part, as far as the centres tell.
   bool wanted_for_any(bool corner, int ix, int iy) const;
   bool tried(std::size_t slot, bool corner, int ix, int iy) const;
   void mark_tried(std::size_t slot, bool corner, int ix, int iy);

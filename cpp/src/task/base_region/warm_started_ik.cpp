@@ -14,7 +14,7 @@ namespace {
 constexpr int kIterations = 8;
 constexpr double kShrink =
     0.25;  // An iteration that shrinks the squared error less is a failure; the second ends the search.
-constexpr double kDampingPerError = 0.03;  // As in refine_ik(): none near the goal, where the step is Newton's.
+constexpr double kDampingPerError = 0.03;  // As refine_ik() has it: none near the goal, where the step is Newton's.
 constexpr double kLeastDamping = 1e-10;
 constexpr double kLongestStep = 0.7;  // [rad or m]; longer ones lead away from the configuration one came from.
 
@@ -45,7 +45,7 @@ bool solve_symmetric(std::array<double, 36>& A, Vector6d& b) {
   return true;
 }
 
-/// From one pose to the other: position, and the sine of the angle along the axis, which is the rotation vector to
+/// How one pose is off another: position, and the sine of the angle along the axis, which is the rotation vector to
 /// third order.
 Vector6d difference(const Pose& from, const Pose& to) {
   Vector6d error;

@@ -12,7 +12,7 @@ namespace mmgrasp::detail {
 class WarmStartedIk {
  public:
   explicit WarmStartedIk(const JointGroup& arm);
-  /// From q, in place. True when the tool is at the pose within the tolerances of IkOptions' defaults.
+  /// Solves from q, in place. True when the tool is at the pose within the tolerances of IkOptions' defaults.
   bool solve(const Pose& T_base_tip, Eigen::VectorXd& q);
 
  private:

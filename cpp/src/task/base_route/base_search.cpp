@@ -63,6 +63,8 @@ struct Entry {
   }
 };
 
+/// A* over a lattice of base poses around the start, joined to either end along its heading. Edges are checked only
+/// when they would be used.
 class BaseSearch {
  public:
   BaseSearch(BaseClearance& clearance, const Eigen::Vector3d& from, const Eigen::Vector3d& to,

@@ -31,7 +31,7 @@ BaseRoutes::BaseRoutes(const PartSupplyProblem& problem, const Monitor& monitor)
 
 BasePath BaseRoutes::plan(CollisionChecker& padded, CollisionChecker& bare, const Eigen::Vector3d& from,
                           const Eigen::Vector3d& to, const Monitor& monitor) const {
-  const auto attempt = [&](CollisionChecker& checker, double factor) {
+  const auto search = [&](CollisionChecker& checker, double factor) {
     BaseRouteOptions options;
     options.base = problem_.robot.base();
     options.resolution = factor * problem_.options.route_resolution;
@@ -42,15 +42,15 @@ BasePath BaseRoutes::plan(CollisionChecker& padded, CollisionChecker& bare, cons
   };
   bool gave_up = false;
   for (double factor = 1; factor <= kCoarsest; factor *= 2) {
-    BasePath path = attempt(padded, factor);
-    if (!settled(path) && path.outcome != Outcome::timeout) path = attempt(bare, factor);
+    BasePath path = search(padded, factor);
+    if (!settled(path) && path.outcome != Outcome::timeout) path = search(bare, factor);
     if (settled(path)) return path;
     if (path.outcome != Outcome::timeout) break;
     gave_up = true;  // larger cells may lead there in the same number of base poses
   }
   BasePath path;
   path.outcome = Outcome::timeout;
-  return gave_up ? path : attempt(bare, 0.5);  // a narrow place may need a finer grid
+  return gave_up ? path : search(bare, 0.5);  // a narrow place may need a finer grid
 }
 
 BasePath BaseRoutes::between(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {

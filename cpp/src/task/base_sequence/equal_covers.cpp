@@ -7,6 +7,7 @@ namespace {
 
 constexpr std::size_t kMaxSteps = 300'000;
 
+/// Goes through covers of one size by depth first, each of them once, and leaves branches that cannot be finished.
 class Enumeration {
  public:
   Enumeration(const SetCoverProblem& problem, double cost, std::size_t size, std::size_t count)

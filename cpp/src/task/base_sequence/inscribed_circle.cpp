@@ -49,6 +49,7 @@ struct Room {
   std::vector<Cell> blocked;     // complement cells that are nearest to some point of the cell
 };
 
+/// Branch and bound for the largest disc in a union of cells: squares of centres are split, the most promising first.
 class DiscSearch {
  public:
   DiscSearch(int nx, int ny, const std::vector<std::uint8_t>& cells) : nx_(nx), ny_(ny), cells_(cells) {}
@@ -111,8 +112,8 @@ class DiscSearch {
     return false;
   }
 
-  /// From the middle of every cell of the region to the nearest cell of the complement: along rows first, then the
-  /// least over the rows.
+  /// Squared distance from the middle of each cell of the region to the nearest cell of the complement: along rows
+  /// first, then the least over the rows.
   std::vector<double> squared_distances() const {
     const auto gap = [](int steps) { return squared(std::max(steps - 0.5, 0.0)); };
     std::vector<int> along(cells_.size());  // steps within the row

@@ -22,6 +22,7 @@ constexpr int kLevels = 16;             // Radii at which the other discs' candi
 constexpr std::size_t kRoutes = 200;    // Equally good sequences whose routes are compared;
 constexpr std::size_t kManyStops = 12;  // a tenth of them beyond so many stops, where routes take longer to find.
 
+/// Finds the least number of stops, then breaks ties step by step: smallest disc, sum of radii, route.
 class LeastStops {
  public:
   LeastStops(const BaseGrid& grid, const std::vector<BaseRegion>& regions, const StopOptions& options,

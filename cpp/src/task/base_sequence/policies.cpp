@@ -61,6 +61,7 @@ int heading_of(const BaseGrid& grid, double angle) {
   return -1;
 }
 
+/// Plans round after round and holds each round's stops against where the parts can really be grasped.
 class PolicyRun {
  public:
   PolicyRun(const RoundRegions& planned, const PartRegions& actual, const PickingOrder& order,

@@ -17,6 +17,7 @@ constexpr std::size_t kPlannedStops = 6;
 /// Two places to drive between, by their indices: the stops, then start and goal.
 using Leg = std::pair<int, int>;
 
+/// Orders stops by the lengths of drives, which are planned for few stops and estimated for many.
 class StopOrdering {
  public:
   StopOrdering(const PartSupplyProblem& problem, const std::vector<Stop>& stops, BaseRoutes& routes)

@@ -16,7 +16,7 @@ using Eigen::VectorXd;
 constexpr int kSpare = 3;           // sequences generated for each that is tried
 constexpr double kCollision = 0.3;  // what a colliding waypoint of a guess counts as [s]
 
-/// From rest to rest.
+/// Least time for a way from rest to rest [s].
 double rest_to_rest(double way, double velocity, double acceleration) {
   const double ramps = velocity * velocity / acceleration;
   return way >= ramps ? way / velocity + velocity / acceleration : 2 * std::sqrt(way / acceleration);

@@ -30,8 +30,7 @@ std::string drive_by_csv(const DriveByResult& result, int between) {
     std::string task, attached;
     for (std::size_t i = 0; line > 0 && i < result.events.size(); ++i) {
       const DriveByEvent& event = result.events[i];
-      if (line - 1 == static_cast<std::size_t>(event.waypoint) * static_cast<std::size_t>(between + 1))
-        task = std::to_string(i);
+      if (line - 1 == static_cast<std::size_t>(event.waypoint) * (between + 1)) task = std::to_string(i);
       if (!event.object.empty() && times[line - 1] >= event.attach_time) attached = event.object;
     }
     text += line == 0 ? ",task,attached" : "," + task + "," + quoted(attached);

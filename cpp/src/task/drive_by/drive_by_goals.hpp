@@ -27,8 +27,8 @@ GoalConfigurations find_goal_configurations(const JointGroup& group, CollisionCh
                                             const Eigen::VectorXd& before, const Eigen::VectorXd& after,
                                             const DriveByOptions& options, unsigned stream, const Monitor& monitor);
 
-/// For a step to which a straight way leads: beside each configuration of the step before the nearest one with the same
-/// candidate, where there is one.
+/// Configurations for a step to which a straight way leads: beside each one of the step before the nearest with the
+/// same candidate, where there is one.
 GoalConfigurations follow_goal_configurations(const JointGroup& group, CollisionChecker* checker,
                                               const DriveByStep& step, const GoalConfigurations& before,
                                               const Monitor& monitor);

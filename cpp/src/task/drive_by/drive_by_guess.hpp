@@ -15,7 +15,7 @@ std::vector<int> share_intervals(int intervals, const std::vector<double>& times
 /// A way that is known to be free of collisions: straight between its points.
 struct GuidedWay {
   std::vector<Eigen::VectorXd> points;  ///< Empty: the way is not guided.
-  std::vector<double> times;            ///< At the points, from 0 [s].
+  std::vector<double> times;            ///< When each point is reached, from 0 [s].
   Eigen::VectorXd at(double time) const;
 };
 

@@ -14,8 +14,8 @@ class SceneStates {
  public:
   SceneStates(const JointGroup& group, const World& world, const std::vector<DriveByStep>& tasks);
 
-  CollisionChecker& before(std::size_t task);  ///< On the way to a task; earlier parts are gone.
-  CollisionChecker& at(std::size_t task);      ///< While its part is taken: it stands there, fingers may touch it.
+  CollisionChecker& before(std::size_t task);  ///< Checks the way to a task; earlier parts are gone.
+  CollisionChecker& at(std::size_t task);      ///< Checks while its part is taken: fingers may touch it.
   /// One checker per interval. Parts are held as the sequence takes them; valid until the next call.
   std::vector<CollisionChecker*> along(const std::vector<int>& intervals, const ConfigurationSequence& sequence);
 
@@ -23,8 +23,8 @@ class SceneStates {
   const JointGroup& group_;
   const World& world_;
   const std::vector<DriveByStep>& tasks_;
-  World left(std::size_t task) const;  ///< Without the parts of tasks before this one.
-  /// With the part of a step in the hand, as it was taken in this configuration.
+  World left(std::size_t task) const;  ///< The world without the parts of earlier tasks.
+  /// Checks with the part of a step in the hand, as it was taken in this configuration.
   CollisionChecker holding(std::size_t step, const Eigen::VectorXd& q) const;
   std::map<std::size_t, CollisionChecker> before_, at_, attached_;
 };

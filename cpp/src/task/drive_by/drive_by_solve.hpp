@@ -24,11 +24,11 @@ class DriveBySolver {
                 const DriveByGoal& goal, const DriveByOptions& options, SceneStates* scene_states,
                 const Monitor& monitor);
 
-  /// From a guess straight through the configurations, or around obstacles when that collides; very many waypoints
-  /// start from the solution with few. `waypoints` are those of the steps.
+  /// Optimises from a guess straight through the configurations, or around obstacles when that collides; very many
+  /// waypoints start from the solution with few. `waypoints` are those of the steps.
   WholeBodyResult solve(const ConfigurationSequence& sequence, const SolveSettings& settings,
                         std::vector<int>& waypoints);
-  /// At how many of its waypoints the first guess collides.
+  /// Number of waypoints at which the first guess collides.
   int collisions(const ConfigurationSequence& sequence);
   DriveBySeeds& seeds() { return seeds_; }
   double seconds() const { return stopwatch_.seconds(); }

@@ -97,6 +97,7 @@ class FreeFloor {
   std::unordered_map<std::int64_t, bool> points_, discs_;
 };
 
+/// Looks for the shortest move of a tray, and all that moves with it, after which it can be served.
 class MoveSearch {
  public:
   MoveSearch(const PartSupplyProblem& problem, const ReachDatabase& database, const BaseGrid& grid, TrayId tray)

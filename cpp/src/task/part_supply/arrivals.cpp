@@ -10,8 +10,8 @@
 namespace mmgrasp::detail {
 namespace {
 
-constexpr std::size_t kFewArrivals = 100;   // At each base pose that could be the stop.
-constexpr std::size_t kMoreArrivals = 800;  // At the best of them.
+constexpr std::size_t kFewArrivals = 100;   // Drawn at each base pose that could be the stop.
+constexpr std::size_t kMoreArrivals = 800;  // Drawn at the best of them.
 constexpr std::size_t kFinalists = 8;
 constexpr std::size_t kMostPoses = 400;
 

@@ -7,7 +7,7 @@
 
 namespace mmgrasp::detail {
 
-/// From how many of `samples` arrivals, drawn by the problem's `arrival_covariance`, all parts of each stop can be
+/// Counts the arrivals, of `samples` drawn by the problem's `arrival_covariance`, from which all parts of a stop can be
 /// grasped. The errors drawn are the same at every stop, so that stops can be compared; `chosen` draws others than
 /// those by which seek_likely_poses() has chosen, which would flatter what they chose.
 MMGRASP_EXPORT StopSamples count_arrivals(const PartSupplyProblem& problem, const BasePoseEvaluator& evaluator,

@@ -52,6 +52,8 @@ class StageClock {
   Stopwatch stopwatch_;
 };
 
+/// The stages of a part-supply plan in order: base regions, stops, picks, route. A stage that fails leaves its
+/// obstructions.
 class PartSupply {
  public:
   PartSupply(const PartSupplyProblem& problem, const ReachDatabase& database, const Monitor& monitor)
@@ -68,7 +70,7 @@ class PartSupply {
       }
       return std::move(plan_);
     }
-    if (!tell_arrivals()) return std::move(plan_);
+    if (!count_stop_arrivals()) return std::move(plan_);
     plan_.outcome = Outcome::solved;
     return std::move(plan_);
   }
@@ -119,8 +121,8 @@ class PartSupply {
     return !check.stopped;
   }
 
-  /// How sure each stop is, where it is in the end.
-  bool tell_arrivals() {
+  /// Counts how many arrivals each stop serves, in its final place.
+  bool count_stop_arrivals() {
     if (!arrivals_matter()) return true;
     const StageClock clock(plan_, "arrivals");
     const StopSamples seen =

@@ -44,6 +44,7 @@ struct Paths {
   JointPath transit, approach, lift, transfer, retreat;
 };
 
+/// Tries grasps and arm configurations, the best first, until one has all motions of the pick.
 class PickPlanner {
  public:
   PickPlanner(const PickProblem& problem, const ReachDatabase& database, const Monitor& monitor)

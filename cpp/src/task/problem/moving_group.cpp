@@ -37,8 +37,8 @@ bool is_floor(const Eigen::AlignedBox3d& box) {
 }
 
 bool touch(const Eigen::AlignedBox3d& a, const Eigen::AlignedBox3d& b) {
-  const Eigen::Vector3d gap = Eigen::Vector3d::Constant(kTouch);
-  return Eigen::AlignedBox3d(a.min() - gap, a.max() + gap).intersects(b);
+  const Eigen::Vector3d clearance = Eigen::Vector3d::Constant(kTouch);
+  return Eigen::AlignedBox3d(a.min() - clearance, a.max() + clearance).intersects(b);
 }
 
 /// One stands on the other.

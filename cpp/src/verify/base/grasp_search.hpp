@@ -33,7 +33,7 @@ class GraspSearch {
 
   /// Whether the part can be grasped from where the judge's base stands.
   bool find(int part);
-  /// As find(), with kSecondLook tries before the part counts as lost: for what a verdict hangs on.
+  /// find() with kSecondLook tries before the part counts as lost: where a verdict hangs on it.
   bool find_thoroughly(int part);
   /// Moves the base there: whether the robot may stand there at home and grasp all these parts.
   bool serves(const Eigen::Vector3d& base_pose, const std::vector<int>& parts, bool thoroughly = false);

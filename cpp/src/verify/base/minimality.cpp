@@ -45,6 +45,7 @@ std::vector<const CheckedRegion*> usable_regions(const PlanToCheck& plan, Faults
   return usable;
 }
 
+/// Holds the plan's stops against its regions: where they stand, how much room they have, whether fewer would do.
 class StopsCheck {
  public:
   StopsCheck(const Context& context, std::vector<const CheckedRegion*> regions, Faults& faults)
@@ -176,7 +177,7 @@ class StopsCheck {
     return floor_.clearance(region, layer, point, std::min(radius + 1e-3, limit));
   }
 
-  /// At least `least` stops are needed, `enough` suffice; negative: no number of them.
+  /// Judges the number of stops: at least `least` are needed, `enough` suffice; negative: no number of them.
   void judge_count(int least, int enough) {
     const int stops = static_cast<int>(plan_.stops.size());
     if (least < 0) {

@@ -98,6 +98,7 @@ std::vector<T> drawn(const std::vector<T>& all, int count, Rng& rng) {
   return some;
 }
 
+/// Draws base poses inside a region, which must serve its tray, and cells beside it, which must not.
 class RegionCheck {
  public:
   RegionCheck(const Context& context, Faults& faults, GraspSearch search, Rng rng)
@@ -177,7 +178,7 @@ class RegionCheck {
     return good;
   }
 
-  /// At its corners and its middle, as planners look at a cell.
+  /// Whether a cell serves the parts at its corners and its middle, which is how planners look at a cell.
   bool whole_cell_serves(const RegionCells& cells, const Cell& cell, const std::vector<int>& parts) {
     constexpr std::array<std::array<double, 2>, 5> kPlaces = {{{0, 0}, {1, 1}, {0, 1}, {1, 0}, {0.5, 0.5}}};
     return std::all_of(kPlaces.begin(), kPlaces.end(),

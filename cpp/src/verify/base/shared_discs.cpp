@@ -147,6 +147,7 @@ class Edges {
   std::set<std::pair<int, int>> arcs_;     // centres
 };
 
+/// Finds which sets of regions share a disc, by splitting squares of disc centres until each is decided.
 class DiscSearch {
  public:
   DiscSearch(const Floor& floor, double radius, const Monitor& monitor)

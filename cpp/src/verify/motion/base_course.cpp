@@ -102,7 +102,7 @@ void check_accelerations(const PlanToCheck& plan, const CheckedMotion& motion, c
   };
   for (std::size_t i = 0; i <= last; ++i) {
     for (Eigen::Index j = 0; j < motion.accelerations[i].size(); ++j) {
-      const auto column = static_cast<std::size_t>(j);
+      const std::size_t column = j;
       const double before = mean(i > 0 ? i - 1 : 0, j), after = mean(std::min(i, last - 1), j);
       const double said = motion.accelerations[i][j], next = motion.accelerations[std::min(i + 1, last)][j];
       const double slack = kFitSlack * limits[column];

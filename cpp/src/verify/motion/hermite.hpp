@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 
-#include "mmgrasp/verify/plan_check.hpp"
+#include "mmgrasp/verify/plan_to_check.hpp"
 
 namespace mmgrasp::verify::detail {
 

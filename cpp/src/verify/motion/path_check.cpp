@@ -28,6 +28,7 @@ ArmSetup setup_of(const PathToCheck& path, const RobotModel& robot) {
   return setup;
 }
 
+/// Walks along a path in steps until a configuration is not allowed.
 class PathWalk {
  public:
   PathWalk(const PathToCheck& path, std::shared_ptr<const Stage> stage, double step)

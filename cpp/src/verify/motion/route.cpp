@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kSamePose = 1e-6;     // Poses that differ by no more are the same [m, rad].
 constexpr double kLimitSlack = 1e-5;   // [rad or m]; what limits and values printed to five digits lose
-constexpr double kLargest = 1e6;       // Beyond this a pose is no number to compute with [m, rad].
+constexpr double kLargest = 1e6;       // No larger pose can be computed with [m, rad].
 constexpr double kMaxSteps = 1000000;  // Base poses of one leg.
 
 bool same_pose(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
@@ -61,6 +61,7 @@ bool values_hold(const CheckedLegValues& said, const std::vector<Eigen::Vector3d
   return same(said.length, length) && same(said.turning, turning) && same(said.duration, duration);
 }
 
+/// Checks every leg of the route: its ends, whether the base can drive it, collisions, and what is said about it.
 class RouteCheck {
  public:
   RouteCheck(const Context& context, Judge& judge, Faults& faults)

@@ -6,11 +6,11 @@
 namespace mmgrasp::verify::detail {
 namespace {
 
-constexpr double kStraight = 1e-3;  // Deviation from the line, and missing length [m].
-constexpr double kTurn = 0.01;      // And from the final orientation [rad].
-constexpr double kLevel = 0.01;     // Tilt of a released part [rad].
-constexpr double kBelowGap = 1e-3;  // A released part may be this far below the bin's top [m] ...
-constexpr double kAboveGap = 0.05;  // ... and this far above the drop gap [m].
+constexpr double kStraight = 1e-3;   // Deviation from the line, and missing length [m].
+constexpr double kTurn = 0.01;       // Deviation from the final orientation [rad].
+constexpr double kLevel = 0.01;      // Tilt of a released part [rad].
+constexpr double kBelowBin = 1e-3;   // A released part may be this far below the bin's top [m] ...
+constexpr double kAboveDrop = 0.05;  // ... and this far above the drop height [m].
 
 }  // namespace
 
@@ -76,10 +76,10 @@ void check_release(const Context& context, const CheckedPart& part, const Pose& 
     faults.push_back({"release-tilted", where, "the part is let go tilted by " + text(tilt) + " rad from how it lay"});
   }
   const double height = lowest_z(part.body.shapes, T_world_bin.inverse() * T_world_released);
-  if (height < -kBelowGap || height > plan.drop_height + kAboveGap) {
+  if (height < -kBelowBin || height > plan.drop_height + kAboveDrop) {
     faults.push_back({"release-height", where,
                       "the part's lowest point is " + text(height) + " m over the bin's top, allowed is [" +
-                          text(-kBelowGap) + ", " + text(plan.drop_height + kAboveGap) + "]"});
+                          text(-kBelowBin) + ", " + text(plan.drop_height + kAboveDrop) + "]"});
   }
 }
 

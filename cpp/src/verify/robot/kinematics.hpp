@@ -22,8 +22,8 @@ struct ArmSetup {
   int tip_link = -1;
   std::map<int, double> others;  ///< Joint index -> value held.
   std::vector<FingerMap> fingers;
-  std::vector<double> openings = {0.0,
-                                  0.1};  ///< At equal steps of the finger joints from closed to open; at least two [m].
+  /// Openings at equal steps of the finger joints from closed to open; at least two [m].
+  std::vector<double> openings = {0.0, 0.1};
 
   /// How far the fingers are open, in [0, 1].
   double share_open(double opening) const;

@@ -18,7 +18,7 @@ struct ModelJoint {
   std::string name;
   JointKind kind = JointKind::fixed;
   int parent = -1, child = -1;        ///< Link indices.
-  KDL::Frame T_parent_child;          ///< With the joint at zero.
+  KDL::Frame T_parent_child;          ///< Pose of the child while the joint is at zero.
   KDL::Vector axis = {1, 0, 0};       ///< Unit, in the child's frame.
   double lower = 0, upper = 0;        ///< [rad] or [m]; infinite where there is no limit.
   double velocity = 0;                ///< [rad/s] or [m/s]
@@ -31,7 +31,7 @@ struct ModelJoint {
 
 struct ModelLink {
   std::string name;
-  int joint = -1;  ///< That carries it; -1: the root.
+  int joint = -1;  ///< The joint that carries it; -1: the root.
   std::vector<int> child_joints;
   std::vector<LinkShape> shapes;
   bool shapes_left_out = false;  ///< Some of its meshes were not loaded by those who planned.

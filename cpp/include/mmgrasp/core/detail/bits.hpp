@@ -49,7 +49,7 @@ class Bits {
     for (std::size_t w = 0; w < words_.size(); ++w) words_[w] |= other.words_[w];
     return *this;
   }
-  Bits& operator-=(const Bits& other) {  ///< Without those of `other`.
+  Bits& operator-=(const Bits& other) {  ///< Clears the bits that are set in `other`.
     for (std::size_t w = 0; w < words_.size(); ++w) words_[w] &= ~other.words_[w];
     return *this;
   }

@@ -29,7 +29,7 @@ class LeastSums {
     open_.pop_back();
     // Each other choice comes from one: that with its last index above zero lowered by one.
     for (std::size_t i = best.last; i < lists_.size(); ++i) {
-      const auto at = static_cast<std::size_t>(best.index[i]);
+      const std::size_t at = best.index[i];
       if (at + 1 == lists_[i].size()) continue;
       Choice more = best;
       ++more.index[i];

@@ -33,7 +33,7 @@ struct FrameTree {
   explicit FrameTree(const GroupModel& model);
 
   int frames;                             ///< Numbers in use, those of links that stand in another frame included.
-  std::vector<ElementaryMotion> motions;  ///< From the root outwards.
+  std::vector<ElementaryMotion> motions;  ///< Motions from the root outwards.
   std::vector<int> motion_of_frame;       ///< The motion that makes each frame; -1: none.
   std::vector<int> frame_of_link;
   std::vector<Rigid> link_in_frame;

@@ -11,8 +11,9 @@ namespace {
 
 constexpr int kFirstIterations = 64;    // RRT-Connect's budget per grasp in the first round; doubled every round.
 constexpr int kTotalIterations = 4096;  // Budget for all grasps before the planner takes over.
-constexpr double kNoTimeLimit = 1e7;    // For RRT-Connect [s]: the time limit of the call ends it.
+constexpr double kNoTimeLimit = 1e7;    // Limit of one RRT-Connect [s]: the call's own time limit ends it.
 
+/// Finds any first path: RRT-Connect for one grasp after the other, with budgets that double from round to round.
 class FirstTransfer {
  public:
   FirstTransfer(const ManipulationInput& input, ManipulationResult& result)
@@ -42,7 +43,7 @@ class FirstTransfer {
  private:
   bool unfinished() const { return found_.grasp < 0 && left_ > 0 && !input_.out_of_time(); }
 
-  /// From another start each round, to any of the goals.
+  /// Searches from another start each round to any of the goals.
   void search(const GraspCandidate& candidate, int budget) {
     grasp_ = candidate.grasp;
     query_.start = metric_.wrapped(candidate.starts[round_ % candidate.starts.size()]);

@@ -19,8 +19,8 @@ constexpr std::size_t kMinParallelGrasps = 16;  // Fewer are checked in one thre
 
 constexpr double kPoseGrid = 1.0 / (1LL << 36);  // 1.5e-11 of a metre, or of a rotation matrix.
 
-/// On a grid far finer than any tolerance: poses that are equal but for rounding, as when the heading they come from
-/// is turned once, give the same arm configurations and so the same path.
+/// The tool's pose, rounded to a grid far finer than any tolerance: poses that are equal but for rounding, as when the
+/// heading they come from is turned once, give the same arm configurations and so the same path.
 Pose pose_of_tool(const ManipulationProblem& problem, int grasp, bool at_goal) {
   const Pose& T_world_object = at_goal ? problem.T_world_goal : problem.T_world_start;
   Pose T_world_tool = T_world_object * problem.grasps[grasp].T_object_hand;
@@ -71,7 +71,7 @@ bool GraspCandidates::find_more(std::size_t count) {
   if (complete()) return false;
   const double begin = clock_.seconds();
   count = std::min(count, order_.size() - checked_);
-  // Without a path to bound them, ends are turned again later.
+  // As long as no path bounds their turns, ends are searched in one turn alone, and turned again later.
   const bool unbounded = !result_.path && turns_.any();
   std::vector<GraspCandidate> checked(count), in_one_turn(unbounded ? count : 0);
   std::atomic<bool> late{false};

@@ -41,10 +41,10 @@ class MMGRASP_EXPORT InformedUnion {
   /// Writes a configuration to `q` and returns a grasp: uniform among the ellipsoids that contain it. -1 when the union
   /// is empty, or lies so nearly outside of the sampling bounds that ten thousand tries did not hit it.
   int draw(Rng& rng, double* q);
-  /// Uniform over the sampling bounds, whatever the cost, and over the grasps that can still win.
+  /// Draws uniformly over the sampling bounds, whatever the cost, and over the grasps that can still win.
   int draw_box(Rng& rng, double* q);
-  /// From the ellipsoid around one of a grasp's pairs that holds paths a little more than `factor` times as long as the
-  /// straight line, clamped to the bounds. Whatever the cost.
+  /// Draws from the ellipsoid around one of a grasp's pairs that holds paths a little more than `factor` times as long
+  /// as the straight line, clamped to the bounds, whatever the cost.
   void draw_around(Rng& rng, int grasp, double factor, double* q);
 
  private:

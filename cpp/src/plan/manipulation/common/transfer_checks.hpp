@@ -70,7 +70,7 @@ class MMGRASP_EXPORT TransferChecks {
   std::vector<int> opening_of_;     ///< Per grasp.
   std::string tip_;
   std::set<std::string> tool_;                                    ///< Links that stand still relative to the tip.
-  std::vector<std::vector<std::optional<RobotAlone>>> robot_;     ///< Without the object, [worker][opening].
+  std::vector<std::vector<std::optional<RobotAlone>>> robot_;     ///< Checks without the object, [worker][opening].
   std::vector<std::vector<std::optional<WithObject>>> attached_;  ///< The object alone, [worker][opening].
   std::vector<std::optional<WithObject>> whole_;                  ///< Everything, [opening].
 };

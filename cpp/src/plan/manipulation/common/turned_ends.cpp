@@ -22,7 +22,7 @@ struct TurnPair {
   double start, goal;
   int turns;  ///< The same for pairs with the same difference.
   double squared() const { return (goal - start) * (goal - start); }
-  /// From either to the nearer limit.
+  /// How far the nearer of the two lies from a limit.
   double room(double lower, double upper) const {
     return std::min(std::min(start, goal) - lower, upper - std::max(start, goal));
   }

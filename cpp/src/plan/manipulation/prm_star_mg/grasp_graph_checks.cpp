@@ -9,7 +9,7 @@
 namespace mmgrasp::detail {
 namespace {
 
-constexpr double kSampleSpacing = 0.4;               // Between the configurations that stand for an edge [rad or m].
+constexpr double kSampleSpacing = 0.4;               // Spacing of the configurations that stand for an edge [rad or m].
 constexpr int kMaxSampleDepth = 5;                   // Halvings of an edge for these.
 constexpr std::size_t kMinParallelVertices = 64;     // Fewer vertices are checked in one thread,
 constexpr std::size_t kMinParallelEdgeSamples = 16;  // ... fewer edges by their samples,

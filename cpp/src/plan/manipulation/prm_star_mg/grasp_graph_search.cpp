@@ -142,7 +142,7 @@ double spliced_cost(const Roadmap& roadmap, const GraspGraph& graph, const std::
       sum += graph.candidate.metric.distance(roadmap.vertices().col(nodes[i]), roadmap.vertices().col(nodes[i - 1]));
     along.emplace(nodes[i], sum);
   }
-  // For each exit the best entry before it counts.
+  // A detour leaves the path at an exit; of the entries before it only the best counts.
   std::vector<std::pair<double, double>> entries, exits;  // Position along the path, cost of the link.
   for (const GraspGraph::Link& link : graph.links) {
     if (link.blocked) continue;

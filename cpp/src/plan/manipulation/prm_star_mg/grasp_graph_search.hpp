@@ -27,7 +27,7 @@ class MMGRASP_EXPORT GraspGraphSearch {
   /// Finds the cheapest path not known to be blocked that costs at most `bound` (with a relative slack of 1e-9, since
   /// the bound may be this very path, summed in another order).
   End search(GraspGraph& graph, const EdgeValidityCache& robot, double bound);
-  /// After a cancelled search: no path costs less.
+  /// What a cancelled search had proven: no path costs less.
   double lower_bound() const { return lower_bound_; }
   /// How often the last search pushed a node to the open list, and how many are left there: an upper bound keeps both
   /// small.
@@ -38,7 +38,7 @@ class MMGRASP_EXPORT GraspGraphSearch {
   struct Node {
     double cost, heuristic;
     int parent;
-    Step step;                             ///< From the parent.
+    Step step;                             ///< The step that led here from the parent.
     std::uint32_t stamp = 0, blocked = 0;  ///< The searches in which it was reached, and in which it is blocked.
   };
   struct Entry {

@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kMaxSplicedPaths = 16;     // Earlier paths from which upper bounds are spliced.
 constexpr std::size_t kMaxRoundSize = 32;        // Grasps handled together, whatever the number of threads.
 constexpr std::size_t kMinParallelSearches = 4;  // Fewer graph searches run in one thread.
-// With more openings, vertices are checked for the robot on paths only.
+// Where grasps have more openings than this, vertices are checked for the robot on paths only.
 constexpr int kMaxSharingOpenings = 8;
 
 /// No path between ends farther apart than this can win, shortened or not.

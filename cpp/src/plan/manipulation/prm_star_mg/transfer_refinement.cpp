@@ -18,6 +18,7 @@ constexpr int kNeighbours = 16;             // Neighbours of each vertex.
 constexpr double kDetourFactor = 1.3;       // Every other round takes paths up to this many times as long as the best.
 constexpr double kLeastImprovement = 1e-6;  // Paths shorter by less than this share do not count as better.
 
+/// Rounds of small roadmaps drawn where a cheaper path can pass, each searched and its path shortened.
 class Refinement {
  public:
   Refinement(const ManipulationInput& input, ManipulationResult& result)

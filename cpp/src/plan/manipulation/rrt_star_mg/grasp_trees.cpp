@@ -17,7 +17,7 @@ constexpr double kScannedShare = 1.0 / 64;  // ... and larger ones that hold les
 GraspTrees::GraspTrees(const GraspEnds& ends)
     : ends_(ends),
       dimension_(ends.dimension()),
-      trees_(2 * static_cast<std::size_t>(ends.size())),
+      trees_(2 * ends.size()),
       index_{TreeIndex(ends.dimension(), ends.metric()), TreeIndex(ends.dimension(), ends.metric())} {
   for (int g = 0; g < ends.size(); ++g)
     for (const int side : {GraspEnds::kStart, GraspEnds::kGoal})

@@ -30,7 +30,7 @@ class MMGRASP_EXPORT GraspTrees {
   struct Near {
     int vertex;
     double distance;
-    double key = 0;  ///< For the caller to sort by.
+    double key = 0;  ///< What the caller sorts by.
   };
 
   explicit GraspTrees(const GraspEnds& ends);

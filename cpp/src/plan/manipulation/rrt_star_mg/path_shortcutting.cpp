@@ -118,7 +118,7 @@ bool PathShortcutting::replace(int grasp, std::size_t first, std::size_t last) {
     const std::size_t i = (k + edges / 2) % edges;
     if (!checks_.edge_is_verified(grasp, made_[i], made_[i + 1])) return false;
   }
-  // From the end that is nearer to the root of its tree.
+  // Vertices are made from the end that is nearer to the root of its tree.
   const bool from_start = first < crossing_;
   if (!from_start) {
     std::reverse(made_.begin(), made_.end());

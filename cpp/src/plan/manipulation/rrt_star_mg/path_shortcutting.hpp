@@ -33,7 +33,7 @@ class MMGRASP_EXPORT PathShortcutting {
  private:
   /// The best path's grasp or another one with a path; -1 when that one has lost it.
   int pick_grasp(Rng& rng, int grasps);
-  // On vertices_:
+  // All of these work on vertices_.
   /// Replaces a corner by an edge between points on both of its sides.
   bool shortcut_corner(Rng& rng, int grasp);
   /// Moves the vertices between two others towards the straight line between those, in a random choice of joints alone

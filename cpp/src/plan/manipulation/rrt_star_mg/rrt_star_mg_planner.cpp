@@ -33,7 +33,7 @@ constexpr int kMaxUnseeded = 500;    // Samples after which the trees get the fi
 /// everything else is theirs.
 class RrtStarMg {
  public:
-  /// Over the grasps known now; the result may have a path already.
+  /// Plans over the grasps known now; the result may have a path already.
   RrtStarMg(ManipulationInput& input, ManipulationResult& result, const RrtStarMgTuning& tuning)
       : input_(input),
         result_(result),
@@ -106,8 +106,8 @@ class RrtStarMg {
     return extension.vertex;
   }
 
-  /// Beyond the paper, until there is a path: one configuration is offered to the trees, as in the paper, and then to
-  /// the trees of some single grasps. What is found out about the robot there serves them all.
+  /// One sample before there is a path: offered to the trees as in the paper and then, beyond it, to the trees of some
+  /// single grasps. What is found out about the robot there serves them all.
   void grow_before_first_path(int side) {
     int grasp = sampler_.pick_grasp(rng_);
     const int configuration = sampler_.draw_near_straight_line(rng_, grasp);
@@ -116,7 +116,7 @@ class RrtStarMg {
       connect(growth_.extend_tree(GraspTrees::tree(grasp, side), configuration));
   }
 
-  /// Beyond the paper: nothing is cheaper than a straight line, and many problems have a free one.
+  /// Tries straight lines first, beyond the paper: nothing is cheaper, and many problems have a free one.
   void try_straight_lines() {
     const int tried = std::min(tuning_.straight_line_grasps, ends_.size());
     std::vector<int> roots;

@@ -6,10 +6,7 @@
 namespace mmgrasp::detail {
 
 TreeIndex::TreeIndex(int dimension, JointMetric metric)
-    : dimension_(dimension),
-      metric_(std::move(metric)),
-      block_size_(static_cast<std::size_t>(dimension) * kBlock),
-      offsets_(dimension, 0.0) {
+    : dimension_(dimension), metric_(std::move(metric)), block_size_(dimension * kBlock), offsets_(dimension, 0.0) {
   nodes_.emplace_back();
   nodes_.back().low = new_block();
 }
@@ -25,7 +22,7 @@ void TreeIndex::put(int block, int id, const double* q) {
   double* values = coordinates(block);
   for (int axis = 0; axis < dimension_; ++axis) values[axis * kBlock + own.count] = q[axis];
   own.ids[own.count] = id;
-  if (static_cast<std::size_t>(id) >= places_.size()) places_.resize(static_cast<std::size_t>(id) + 1);
+  if (static_cast<std::size_t>(id) >= places_.size()) places_.resize(id + 1);
   places_[id] = {block, own.count++};
 }
 

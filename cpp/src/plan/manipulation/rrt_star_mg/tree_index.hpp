@@ -63,8 +63,8 @@ class MMGRASP_EXPORT TreeIndex {
     int block = -1, slot = 0;
   };
 
-  double* coordinates(int block) { return values_.data() + static_cast<std::size_t>(block) * block_size_; }
-  const double* coordinates(int block) const { return values_.data() + static_cast<std::size_t>(block) * block_size_; }
+  double* coordinates(int block) { return values_.data() + block * block_size_; }
+  const double* coordinates(int block) const { return values_.data() + block * block_size_; }
   int new_block();
   void insert_wrapped(int id, const double* q);
   void put(int block, int id, const double* q);
@@ -81,7 +81,8 @@ class MMGRASP_EXPORT TreeIndex {
     visit_node_around(0, query_.data(), 0, bound, visit);
   }
 
-  /// As visit_node() where angles wrap: a cell may be nearer across the seam than across the plane that cut it off.
+  /// Does what visit_node() does where angles wrap: a cell may be nearer across the seam than across the plane that cut
+  /// it off.
   template <class Visit>
   void visit_node_around(int index, const double* q, double cell, const double& bound, const Visit& visit) const {
     const Node& node = nodes_[index];
@@ -113,7 +114,7 @@ class MMGRASP_EXPORT TreeIndex {
     offsets_[axis] = before;
   }
 
-  /// From an angle to an interval of angles, all of them in [-pi, pi].
+  /// Distance of an angle from an interval of angles, all of them in [-pi, pi].
   static double off(double angle, double low, double high) {
     if (angle >= low && angle <= high) return 0;
     return angle < low ? std::min(low - angle, angle + kTwoPi - high) : std::min(angle - high, low + kTwoPi - angle);

@@ -28,11 +28,11 @@ class MMGRASP_EXPORT TreeSampler {
   /// Sample (Algorithm 5.10), once a path is known: uniform where a better one can pass, with one of the grasps that
   /// can have it.
   Sample draw(Rng& rng);
-  /// Until there is a path: mostly near a straight line of the grasp, for the space within the joint limits is large
-  /// and few paths leave that neighbourhood. Returns the configuration.
+  /// Draws a configuration before there is a path: mostly near a straight line of the grasp, for the space within the
+  /// joint limits is large and few paths leave that neighbourhood.
   int draw_near_straight_line(Rng& rng, int grasp);
-  /// Until there is a path: a grasp to grow, the k-th cheapest straight line with a chance that falls as 1 / k. However
-  /// many must be tried, none waits much longer than its place in that order.
+  /// The grasp whose trees grow next before there is a path: that of the k-th cheapest straight line with a chance that
+  /// falls as 1 / k. However many must be tried, none waits much longer than its place in that order.
   int pick_grasp(Rng& rng) const;
 
   /// SampleRandom(X_reassign) (Algorithm 5.13, line 19): takes random ones out of the list until one may improve a

@@ -5475,6 +5475,12 @@ class ObjectPathResult:
         O3: its sum along the tool's motion.
         """
     @property
+    def gaps(self) -> list[int]:
+        """
+        When every pose is reached but there is no path: for each pose but the last how the next is missed.
+        0 it is not, 1 every motion jumps to another posture, 2 those that do not collide or leave the path.
+        """
+    @property
     def joint_motion(self) -> float:
         """
         O1: sum of joint-space distances [rad or m].
@@ -5623,6 +5629,11 @@ class GraspOptimum:
         For each pose at how many all arm configurations collide.
         """
     @property
+    def colliding_after(self) -> list[int]:
+        """
+        The same where each motion that does not jump collides or leaves the path.
+        """
+    @property
     def evaluations(self) -> int:
         """
         Grasps tried.
@@ -5651,6 +5662,12 @@ class GraspOptimum:
     def history(self) -> list[float]:
         """
         Best cost after each of them; infinite while none was feasible.
+        """
+    @property
+    def jumping_after(self) -> list[int]:
+        """
+        For each pose but the last: with how many grasps that reach every pose all motions to the next one
+        jump to another posture of the arm.
         """
     @property
     def lower_bound(self) -> float:
@@ -6503,7 +6520,7 @@ def optimize_grasp(problem: ObjectPathProblem, pipe: Pipe, *, gripper: Hand | No
         front_searches: int = 0  # further searches, each for another mix of the objectives: the Pareto front is searched
         max_gap: float = 0.001  # branch_and_bound: ends once no grasp can be cheaper by this share
         max_boxes: int = 1000000  # branch_and_bound: budget in boxes of grasps
-        time_limit: float = 600.0  # branch_and_bound: wall-clock cap [s]
+        time_limit: float = 600.0  # Wall-clock cap of all searches together [s]
         threads: int = 0  # branch_and_bound: 0: all; the answer does not depend on it
     """
 def paired_order(places: collections.abc.Sequence[numpy.typing.ArrayLike]) -> list[list[int]]:

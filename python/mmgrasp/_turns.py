@@ -38,7 +38,8 @@ def rotation_vectors(R: np.ndarray) -> np.ndarray:
     sine = np.linalg.norm(skew, axis=1)
     angle = np.arctan2(sine, (np.trace(R, axis1=1, axis2=2) - 1) / 2)
     unit = np.where(sine[:, None] > 1e-12, skew / np.maximum(sine, 1e-12)[:, None], [1.0, 0.0, 0.0])
-    return angle[:, None] * unit
+    out: np.ndarray = angle[:, None] * unit
+    return out
 
 
 def rotations_about(vectors: np.ndarray) -> np.ndarray:

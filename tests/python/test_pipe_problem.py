@@ -25,7 +25,7 @@ from mmgrasp._turns import rotation_about, rotation_vector
 from mmgrasp.cli import main
 from mmgrasp.grasping import BeamSupport, SupportedFrame, optimize_grasp
 from mmgrasp.pipes import PipePlan, arc_poses, line_poses, load_pipe_problem, plan_pipe, planning
-from mmgrasp.pipes.timed_motion import _dense
+from mmgrasp.pipes.timed_motion import UntimedError, _dense, timed_motion
 from mmgrasp.viz.pipe_report import pipe_report_html
 
 SHIPPED = ASSETS / "pipes" / "pipe1.yaml"
@@ -453,12 +453,12 @@ def test_limits_are_refused_without_a_frame() -> None:
 def test_a_grasp_whose_motion_cannot_be_timed_gives_way_to_the_next(
     plan: PipePlan, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    true_motion = planning.timed_motion
+    true_motion = timed_motion
     refused = [plan.optimum.feasible[0].grasp.T_object_hand]
 
     def timed(problem: Any, grasp: Any, *rest: Any) -> Any:
         if any(np.array_equal(grasp.T_object_hand, T) for T in refused):
-            raise planning.UntimedError("no time")
+            raise UntimedError("no time")
         return true_motion(problem, grasp, *rest)
 
     monkeypatch.setattr(planning, "timed_motion", timed)
@@ -473,5 +473,5 @@ def test_a_grasp_whose_motion_cannot_be_timed_gives_way_to_the_next(
     best = page[page.index("<b>the best</b>") :]
     assert best.index(f"{path.cost:.3f}") < best.index("</tr>")
     refused += [f.grasp.T_object_hand for f in plan.optimum.feasible]
-    with pytest.raises(planning.UntimedError, match="grasps tried"):
+    with pytest.raises(UntimedError, match="grasps tried"):
         planning.plan_pipe(plan.problem)

@@ -16,6 +16,7 @@ import pytest
 from PIL import Image
 
 import mmgrasp as mg
+from camera_poses import look_at
 from frame_folders import (
     INTRINSICS,
     LAYOUTS,
@@ -24,7 +25,6 @@ from frame_folders import (
     SCALES,
     contents,
     direct_map,
-    look_at,
     names,
     run,
     save_png,

@@ -85,3 +85,15 @@ def test_mistakes_are_named(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     with pytest.raises(mg.IoError, match="file"):
         Gripper().to_urdf(tmp_path / "file" / "in")
+
+
+def test_a_gripper_is_a_hand_to_planners(tmp_path: Path) -> None:
+    gripper = Gripper(name="jaws", min_opening=0.01, max_opening=0.06, finger_length=0.04)
+    hand = gripper.hand()
+    assert (hand.tool_link, hand.min_opening, hand.max_opening) == ("tool", 0.01, 0.06)
+    gripper.to_urdf(tmp_path)
+    robot = mg.Robot.load(tmp_path / "gripper.urdf", tmp_path / "gripper.srdf")
+    assert hand.joint_values(0.06) == pytest.approx(mg.Hand.from_robot(robot, "tool").joint_values(0.06))
+    assert mg.grasping.sample_grasps([mg.LinkShape(mg.Box([0.03, 0.05, 0.04]))], hand)
+    with pytest.raises(mg.InvalidInput, match="fingers = 3"):
+        Gripper(fingers=3).hand()

@@ -109,9 +109,10 @@ def test_docstrings_have_a_subject() -> None:
 def test_what_begins_without_a_subject_is_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("test_public_docs.REPOSITORY", tmp_path)
     path = tmp_path / "some.py"
-    path.write_text('"""Some."""\nx = 1\n"""Of x."""\n# In a line of its own.\n# By the way.\ny = 2  # Of y.\n')
+    of, by, within = LOST.strip("() ").split("|")
+    path.write_text(f'"""Some."""\nx = 1\n"""{of} x."""\n# {within} a line.\n# {by} the way.\ny = 2  # {of} y.\n')
     assert list(strings_without_a_subject(path)) == ["some.py:3: Of x."]
     assert list(comments_without_a_subject(path, "# ")) == [
-        "some.py: # In a line of its own.",
-        "some.py: y = 2  # Of y.",
+        f"some.py: # {within} a line.",
+        f"some.py: y = 2  # {of} y.",
     ]

@@ -6,15 +6,14 @@ import contextlib
 import json
 import os
 import shutil
-import signal
 import tempfile
-import threading
 from collections.abc import Iterator
 from fnmatch import fnmatchcase
 from pathlib import Path, PurePosixPath
 
 from .._core import InvalidInput, IoError
 from .._files import check_folder, read_text, write_file
+from .signals import uninterrupted
 
 LIST = "files.json"
 PLAN_FILES = (
@@ -23,22 +22,6 @@ PLAN_FILES = (
 )
 _DRAFT = ".writing."
 _LARGEST_LIST = 100_000_000
-
-
-@contextlib.contextmanager
-def uninterrupted() -> Iterator[None]:
-    """Ctrl-C within the block counts when it ends. (Only the main thread is ever interrupted.)"""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    came: list[int] = []
-    before = signal.signal(signal.SIGINT, lambda number, frame: came.append(number))
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, signal.SIG_DFL if before is None else before)  # None: not Python's
-    if came:
-        signal.raise_signal(signal.SIGINT)
 
 
 class OutputFolder:

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Console
 
 from .._core import Error, InvalidInput, Outcome
-from .._files import check_file, check_folder, printable, write_file
+from .._files import check_file, check_folder, printable, temporary_room, write_file
 from ..documents.reading import Document
 from ..part_supply import (
     ScenarioPlan,
@@ -151,7 +151,8 @@ def run_view(arguments: argparse.Namespace, console: Console) -> int:
         check_file(arguments.png)
         from ..viz.viewer import write_png
 
-        write_png(content, arguments.png)
+        with temporary_room(Path(os.path.realpath(arguments.png)).parent):
+            write_png(content, arguments.png)
         console.print(printable(str(arguments.png)), markup=False)
         return DONE
     from ..viz.viewer import view
@@ -201,7 +202,8 @@ def run_reproduce(arguments: argparse.Namespace, console: Console) -> int:
     if arguments.out is not None:
         check_folder(arguments.out)
     results = []
-    with Reporter(console) as report, _sweep(arguments) as sweep:
+    room = contextlib.nullcontext() if arguments.out is None else temporary_room(arguments.out)
+    with Reporter(console) as report, room, _sweep(arguments) as sweep:
         for name in dict.fromkeys(names):
             result = again.reproduce(name, quick=arguments.quick, seed=arguments.seed, progress=report, sweep=sweep)
             results.append(result)

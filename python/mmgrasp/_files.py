@@ -5,14 +5,17 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import os
+import shutil
 import stat
 import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 
 from ._core import IoError
 
 ASSETS = Path(__file__).parent / "assets"
 LARGEST_FILE = 4_000_000_000  # of a mesh or any other part of a robot [bytes], as in C++
+DRAFT = ".writing."  # begins the names of folders that are being filled
 SCHEMAS = Path(__file__).parent / "schemas"
 
 
@@ -50,6 +53,23 @@ def check_folder(path: Path) -> None:
 def check_file(path: Path) -> None:
     """Raises IoError unless a file can be written there: see check_folder."""
     check_folder(_target(path).parent)
+
+
+@contextlib.contextmanager
+def temporary_room(folder: Path) -> Iterator[None]:
+    """Within the block temporary files may be made: in the folder where no place for them can be written. (Drawing needs one.)"""
+    try:
+        tempfile.gettempdir()
+    except FileNotFoundError:
+        folder.mkdir(parents=True, exist_ok=True)
+        tempfile.tempdir = tempfile.mkdtemp(dir=folder, prefix=DRAFT)
+        try:
+            yield
+        finally:
+            shutil.rmtree(tempfile.tempdir, ignore_errors=True)
+            tempfile.tempdir = None
+    else:
+        yield
 
 
 def _cannot_write(path: Path, error: Exception) -> IoError:

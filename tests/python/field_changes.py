@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 Place = tuple[str | int, ...]
 REMOVED = object()
+ROUNDING = 1e-12
 
 
 class Change(NamedTuple):
@@ -63,7 +64,12 @@ def changed(document: dict[str, Any], place: Place, new: Any) -> dict[str, Any]:
 
 
 def same(a: Any, b: Any) -> bool:
-    return type(a) is type(b) and bool(a == b)
+    """Equal, but for how numbers are rounded: a motion whose velocities are the same backwards is not changed by turning them round."""
+    if type(a) is not type(b):
+        return False
+    if isinstance(a, list):
+        return len(a) == len(b) and all(map(same, a, b))
+    return bool(abs(a - b) <= ROUNDING) if isinstance(a, float) else bool(a == b)
 
 
 def _of_number(value: float) -> Iterator[tuple[str, Any]]:

@@ -232,6 +232,18 @@ def rate_halved(plan: dict[str, Any]) -> None:
     plan["robustness_rate"] = 0.5
 
 
+def rate_of_no_count(plan: dict[str, Any]) -> None:
+    plan["robustness_rate"] = 1 - 0.3 / plan["scenario"]["options"]["robustness_samples"]
+
+
+def grid_wider_on_one_side(plan: dict[str, Any]) -> None:
+    plan["grid"]["nx"] += 3
+
+
+def grid_between_cells(plan: dict[str, Any]) -> None:
+    plan["grid"]["origin"][1] += 0.3 * plan["grid"]["resolution"]
+
+
 def obstructed_and_solved(plan: dict[str, Any]) -> None:
     nothing = {"reach_deficit": 0, "advised_move": [0, 0], "move_trays": [], "move_objects": [], "needed_opening": 0}
     plan["obstructions"] = [
@@ -288,6 +300,9 @@ BREAKS = [
     fingers_stand_clear_of_the_part,
     region_and_radius_inflated,
     rate_halved,
+    rate_of_no_count,
+    grid_wider_on_one_side,
+    grid_between_cells,
     obstructed_and_solved,
     called_not_minimal,
     tool_elsewhere,

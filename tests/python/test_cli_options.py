@@ -30,20 +30,25 @@ NO_NUMBERS = [
 ]
 NO_PATHS = ["", "a\0b"]
 NO_CHOICES = ["", "x", "\u202e", "a" * 5000]
+NO_NAMES = ["", "a\0b", "\x1b[31m", "\u202e", "\ud800", "a\nb", "a" * 5000]
+NO_ADDRESSES = [*NO_NAMES, "nonsense", "tcp://", "tcp://host", "tcp://:1", "tcp://host:port", "tcp://host:0", "tcp://host:65536", "host:1",
+                "tcp://host:1/x", "tcp://host:1 ", "tcp://h\u0660:\u0661"]  # fmt: skip
 FETCH = str(ASSETS / "robots" / "fetchlike" / "fetchlike.urdf")
 
 
 def options() -> list[tuple[str, argparse.Action]]:
-    """Options of all commands, those that take a value; switches and what is meant as any text are left out."""
+    """Options of all commands, those that take a value: all but switches."""
     commands = next(a for a in build_parser()._actions if isinstance(a, argparse._SubParsersAction))
     every = [(name, action) for name, parser in commands.choices.items() for action in parser._actions]
-    return [(n, a) for n, a in every if a.nargs != 0 and (a.type is not None or a.choices)]
+    return [(n, a) for n, a in every if a.nargs != 0]
 
 
 def wrong(action: argparse.Action) -> list[str]:
     kind = getattr(action.type, "__name__", "")
     if action.choices:
         return NO_CHOICES
+    if kind in ("_name", "_address"):
+        return NO_NAMES if kind == "_name" else NO_ADDRESSES
     if kind in ("_path", "_source"):
         return NO_PATHS
     return (
@@ -59,6 +64,8 @@ def test_the_parser_was_read() -> None:
     names = {(name, *action.option_strings) for name, action in options()}
     assert len(names) > 50
     assert {("plan", "--seed"), ("arrive", "--pose"), ("scan", "--up"), ("check", "--package")} <= names
+    assert {("arrive", "--picked"), ("reproduce", "--scheduler"), ("grasp", "--object")} <= names
+    assert not [(name, action.dest) for name, action in options() if action.type is None and not action.choices]
 
 
 @pytest.mark.parametrize(("command", "action"), options(), ids=lambda v: v if isinstance(v, str) else v.dest)
@@ -88,6 +95,11 @@ NAMES = [
     (["bench", "mbm", "--data", "{o}", "--planner", "rrt_konnect"], "did you mean rrt_connect?"),
     (["check", FETCH, "--srdf", "{o}/none.srdf"], "none.srdf"),
     (["check", FETCH, "--xacro-arg", "a=1"], "xacro"),
+    pytest.param(  # which waits for an answer
+        ["reproduce", "p1-table-3.1", "--quick", "--out", "{o}", "--scheduler", "tcp://127.0.0.1:9"],
+        "cannot be reached",
+        marks=pytest.mark.slow,
+    ),
 ]
 
 

@@ -12,6 +12,7 @@ import pytest
 import mmgrasp as mg
 from file_fuzz import SCRAPS
 from frame_folders import WRITERS, Shot, shots, write_frames, write_sensors
+from key_fuzz import changed, tries
 from mmgrasp.frames import open_frames
 from mmgrasp.scan import Scan, ScanOptions, integrate_frames, read_scan, scan_to_dict
 
@@ -115,3 +116,23 @@ def test_damaged_progress(tmp_path: Path) -> None:
     go_on()
     assert fuzz(path, go_on) > 100
     assert fuzz(tmp_path / "map.sdf", go_on) > 100
+
+
+def test_wrong_values_in_progress(tmp_path: Path) -> None:
+    """A value of the list that is wrong is told with the file and its key, whether reading it or comparing with the frames finds it out."""
+    write_frames(tmp_path / "frames", "npz", 2)
+    write_sensors(tmp_path / "frames")
+    scan = Scan.begin(ScanOptions(0.02, 0.1, 2e9))
+    integrate_frames(open_frames(tmp_path / "frames"), scan)
+    scan.sdf.save(tmp_path / "map.sdf")
+    document, path = scan_to_dict(scan, "map.sdf"), tmp_path / "progress.json"
+    refused = 0
+    for place, value in random.Random(1).sample(tries(document), 500):
+        path.write_text(json.dumps(changed(document, place, value)))
+        try:
+            integrate_frames(open_frames(tmp_path / "frames"), read_scan(path))
+        except mg.Error as error:
+            names = [key for key in place if isinstance(key, str) and key != "camera"]
+            assert "progress.json" in str(error) and names[-1] in str(error), (place, value, str(error))
+            refused += 1
+    assert refused > 300

@@ -8,6 +8,7 @@ import signal
 import stat
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 import pytest
@@ -209,6 +210,23 @@ print(read_bytes(Path(sys.argv[1]), 1_000_000_000))
 def test_what_would_move_a_terminal_is_written_as_escapes() -> None:
     assert printable("a\x1b[31mb\ud800\n") == "a\\x1b[31mb\\ud800\n"
     assert printable("Käfig") == "Käfig"
+
+
+def test_a_plan_is_drawn_where_nothing_but_its_folder_can_be_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Drawing needs a temporary folder: without one, a plan made in minutes would be lost."""
+
+    def nowhere() -> str:
+        raise FileNotFoundError("No usable temporary directory found")
+
+    monkeypatch.setattr(tempfile, "gettempdir", nowhere)
+    with OutputFolder(tmp_path).filled() as draft:
+        write_file(draft / "plan.json", "1")
+        made = Path(tempfile.mkdtemp(dir=tempfile.tempdir))
+        assert tmp_path in made.parents and draft not in made.parents
+    assert tempfile.tempdir is None
+    assert names(tmp_path) == {"plan.json", LIST}
 
 
 @pytest.mark.slow

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import argparse
 import math
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .. import _core
+from ..documents.reading import LONGEST_NAME
 
 if TYPE_CHECKING:  # argparse has no public name for what add_subparsers gives
     Commands = argparse._SubParsersAction["_Parser"]
@@ -49,7 +51,7 @@ def _add_plan(commands: Commands) -> None:
     parser.add_argument("scenario", type=_path, help="scenario file (YAML)")
     parser.add_argument("-o", "--out", type=_path, required=True, metavar="DIR", help="folder to write into")
     parser.add_argument(
-        "--robot", metavar="NAME", help="another robot: a shipped profile (tiago, ...) or a profile file"
+        "--robot", type=_source, metavar="NAME", help="another robot: a shipped profile (tiago, ...) or a profile file"
     )
     parser.add_argument(
         "--threads", type=_threads, metavar="N", help="0: all (default); the plan does not depend on it"
@@ -65,7 +67,7 @@ def _add_verify(commands: Commands) -> None:
     parser = commands.add_parser("verify", help="check a finished plan without the planner")
     parser.add_argument("plan", type=_path, help="plan.json")
     parser.add_argument("--scenario", type=_path, metavar="FILE", help="compare with this scenario, read anew")
-    parser.add_argument("--robot", metavar="NAME", help="the robot profile the plan was made with")
+    parser.add_argument("--robot", type=_source, metavar="NAME", help="the robot profile the plan was made with")
     parser.add_argument(
         "--samples",
         type=_count(1, 1_000_000, "base poses"),
@@ -90,9 +92,11 @@ def _add_arrive(commands: Commands) -> None:
         metavar=("X", "Y", "THETA"),
         help="measured base pose [m, m, rad]",
     )
-    parser.add_argument("--picked", nargs="+", default=[], metavar="PART", help="parts that are gone already")
+    parser.add_argument(
+        "--picked", type=_name, nargs="+", default=[], metavar="PART", help="parts that are gone already"
+    )
     parser.add_argument("--scenario", type=_path, metavar="FILE", help="the plan's scenario, where it has moved")
-    parser.add_argument("--robot", metavar="NAME", help="the robot profile the plan was made with")
+    parser.add_argument("--robot", type=_source, metavar="NAME", help="the robot profile the plan was made with")
     parser.add_argument("-o", "--out", type=_path, metavar="DIR", help="write arrival.json and the trajectories there")
     parser.add_argument("--json", action="store_true", help="print arrival.json")
 
@@ -174,11 +178,12 @@ def _add_grasp(commands: Commands) -> None:
     parser.add_argument("map", type=_path, help="folder that `mmgrasp scan` wrote")
     parser.add_argument(
         "--gripper",
+        type=_source,
         required=True,
         metavar="NAME",
         help="whose gripper: a shipped profile (tiago, ...), or the file of a robot profile or scenario",
     )
-    parser.add_argument("--object", metavar="NAME", help="only this object of objects.json")
+    parser.add_argument("--object", type=_name, metavar="NAME", help="only this object of objects.json")
     parser.add_argument("-o", "--out", type=_path, metavar="FILE", help="also write all grasps as JSON")
     parser.add_argument(
         "--samples", type=_count(1, 100_000, "samples"), default=200, metavar="N", help="grasps tried for an object"
@@ -235,7 +240,7 @@ def _add_reproduce(commands: Commands) -> None:
     parser = commands.add_parser(
         "reproduce", help="compute a paper's tables and figures again, beside the paper's numbers"
     )
-    parser.add_argument("name", nargs="*", help="p1-table-3.3, ... or all; none: list them")
+    parser.add_argument("name", type=_name, nargs="*", help="p1-table-3.3, ... or all; none: list them")
     parser.add_argument("--quick", action="store_true", help="smaller set-ups that show the same in seconds")
     parser.add_argument(
         "--json", action="store_true", help="print JSON instead of Markdown: an object for one name, else a list"
@@ -257,8 +262,8 @@ def _add_bench(commands: Commands) -> None:
         metavar="DIR",
         help="folder with robots/ and planning/ (default ../shared/data)",
     )
-    parser.add_argument("--robot", nargs="+", default=["panda", "ur5"], metavar="NAME")
-    parser.add_argument("--set", nargs="+", metavar="NAME", help="bookshelf_small, ...; default: all seven")
+    parser.add_argument("--robot", type=_name, nargs="+", default=["panda", "ur5"], metavar="NAME")
+    parser.add_argument("--set", type=_name, nargs="+", metavar="NAME", help="bookshelf_small, ...; default: all seven")
     parser.add_argument(
         "--limit",
         type=_count(1, 1_000_000, "problems"),
@@ -269,7 +274,7 @@ def _add_bench(commands: Commands) -> None:
     parser.add_argument(
         "--seeds", type=_count(1, 1_000_000, "runs"), default=1, metavar="N", help="runs of each problem (default 1)"
     )
-    parser.add_argument("--planner", default="rrt_connect", help="a name of planner_names()")
+    parser.add_argument("--planner", type=_name, default="rrt_connect", help="a name of planner_names()")
     parser.add_argument("--json", action="store_true")
 
 
@@ -288,7 +293,9 @@ def _add_cluster_options(parser: argparse.ArgumentParser) -> None:
         metavar="N",
         help="spread the work over N local processes (0: one a core)",
     )
-    where.add_argument("--scheduler", metavar="ADDRESS", help="spread the work over a Dask cluster, tcp://host:port")
+    where.add_argument(
+        "--scheduler", type=_address, metavar="ADDRESS", help="spread the work over a Dask cluster, tcp://host:port"
+    )
     parser.add_argument(
         "--shards", type=_path, metavar="DIR", help="where --workers and --scheduler keep finished shards"
     )
@@ -303,6 +310,21 @@ def _path(text: str) -> Path:
 def _source(text: str) -> str:
     """Path of a file, or the name of a shipped one."""
     return str(_path(text))
+
+
+def _name(text: str) -> str:
+    """A name that can stand in a file and on a terminal; whether there is one is looked up later."""
+    if not text or len(text) > LONGEST_NAME or not text.isprintable():
+        raise argparse.ArgumentTypeError(f"{text!r:.80}: must be a name of 1 to {LONGEST_NAME} printable characters")
+    return text
+
+
+def _address(text: str) -> str:
+    """The address of a Dask scheduler."""
+    found = re.fullmatch(r"[a-z]+://(?:\[[0-9a-fA-F:]+\]|[^\s/:]+):([0-9]{1,5})", text, re.ASCII)
+    if not found or not 1 <= int(found[1]) <= 65535:
+        raise argparse.ArgumentTypeError(f"{text!r:.80}: must be an address tcp://host:port")
+    return text
 
 
 def _count(least: int, most: int, unit: str) -> Callable[[str], int]:

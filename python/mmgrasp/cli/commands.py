@@ -1,7 +1,8 @@
 """The command `mmgrasp`.
 
-Exit codes: 0 done, 1 a plan has faults, a robot cannot be planned for or an exact value of a paper is missed, 2 bad input, 3 no plan was found or no
-frame could be used, 130 Ctrl-C.
+Exit codes: 0 done, 1 a plan has faults, a robot cannot be planned for or an exact value of a paper is missed, 2 bad input, 3 there is provably no plan or no
+frame could be used, 4 none was found, which proves nothing. A command that a signal ended removes what it had half written; its code is 128 and
+the signal's number: 130 Ctrl-C, 143 SIGTERM, 129 SIGHUP, 141 when nobody reads its output any more.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ import argparse
 import contextlib
 import json
 import os
+import signal
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
@@ -18,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Console
 
 from .._core import Error, InvalidInput, Outcome
-from .._files import check_file, check_folder, printable, write_file
+from .._files import check_file, check_folder, printable, temporary_room, write_file
 from ..documents.reading import Document
 from ..part_supply import (
     ScenarioPlan,
@@ -33,7 +35,7 @@ from ..scenario import load_scenario
 from .arguments import build_parser
 from .arrive import run_arrive
 from .check import check_robot, describe
-from .console import Reporter, open_streams
+from .console import CommandConsole, Reporter, leave_streams, open_streams
 from .exit_codes import BAD_INPUT, DONE, FAULTY, INTERRUPTED, exit_code
 from .grasp import run_grasp
 from .grippers import run_grippers
@@ -41,6 +43,7 @@ from .output_folder import OutputFolder
 from .pipe import run_pipe
 from .scan import run_scan
 from .segment import run_segment
+from .signals import Ended, code_of, ended_by_signals
 from .tables import bench_table, drive_by_summary, print_verdict, summary
 
 if TYPE_CHECKING:
@@ -148,7 +151,8 @@ def run_view(arguments: argparse.Namespace, console: Console) -> int:
         check_file(arguments.png)
         from ..viz.viewer import write_png
 
-        write_png(content, arguments.png)
+        with temporary_room(Path(os.path.realpath(arguments.png)).parent):
+            write_png(content, arguments.png)
         console.print(printable(str(arguments.png)), markup=False)
         return DONE
     from ..viz.viewer import view
@@ -198,7 +202,8 @@ def run_reproduce(arguments: argparse.Namespace, console: Console) -> int:
     if arguments.out is not None:
         check_folder(arguments.out)
     results = []
-    with Reporter(console) as report, _sweep(arguments) as sweep:
+    room = contextlib.nullcontext() if arguments.out is None else temporary_room(arguments.out)
+    with Reporter(console) as report, room, _sweep(arguments) as sweep:
         for name in dict.fromkeys(names):
             result = again.reproduce(name, quick=arguments.quick, seed=arguments.seed, progress=report, sweep=sweep)
             results.append(result)
@@ -244,32 +249,47 @@ COMMANDS = {
 def main(arguments: Sequence[str] | None = None) -> int:
     """The command; its exit code. Errors of the user are one line on stderr."""
     open_streams()
+    try:
+        with ended_by_signals():
+            try:
+                return _run(arguments)
+            finally:
+                sys.stdout.flush()  # what nobody reads is found here, not when the interpreter ends
+    except BrokenPipeError:
+        leave_streams()
+        return code_of(signal.SIGPIPE)
+    except Ended as end:
+        return _said(f"ended by {end}", code_of(end.number))
+    except KeyboardInterrupt:
+        return _said("interrupted", INTERRUPTED)
+    except (Error, OSError, RecursionError, MemoryError, ImportError) as error:
+        return _said(_reason(error), BAD_INPUT)
+
+
+def _run(arguments: Sequence[str] | None) -> int:
     parsed = build_parser().parse_args(arguments)
-    console = Console(highlight=False)
     try:
         os.getcwd()
     except FileNotFoundError:
-        print("mmgrasp: the current folder is no longer there: change to another one", file=sys.stderr)
-        return BAD_INPUT
+        return _said("the current folder is no longer there: change to another one", BAD_INPUT)
+    return COMMANDS[parsed.command](parsed, CommandConsole(highlight=False))
+
+
+def _said(message: str, code: int) -> int:
+    """The code, with one line on stderr."""
     try:
-        return COMMANDS[parsed.command](parsed, console)
-    except BrokenPipeError:  # nobody reads on: what is still in the buffer is not for the interpreter's end either
-        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
-        return INTERRUPTED
-    except (Error, OSError) as error:
-        print(f"mmgrasp: {printable(str(error))}", file=sys.stderr)
-        return BAD_INPUT
-    except RecursionError:
-        print("mmgrasp: the input is nested too deeply", file=sys.stderr)
-        return BAD_INPUT
-    except MemoryError:
-        print(
-            "mmgrasp: out of memory: use a coarser grid, larger voxels, fewer samples or fewer parts", file=sys.stderr
-        )
-        return BAD_INPUT
-    except ImportError as error:  # a library that is broken, or that there is no memory for
-        print(f"mmgrasp: a part of the installation cannot be loaded: {printable(str(error))}", file=sys.stderr)
-        return BAD_INPUT
-    except KeyboardInterrupt:
-        print("mmgrasp: interrupted", file=sys.stderr)
-        return INTERRUPTED
+        print(f"mmgrasp: {printable(message)}", file=sys.stderr, flush=True)
+        sys.stdout.flush()
+    except OSError:  # nobody reads, or the disk is full
+        leave_streams()
+    return code
+
+
+def _reason(error: Exception) -> str:
+    if isinstance(error, RecursionError):
+        return "the input is nested too deeply"
+    if isinstance(error, MemoryError):
+        return "out of memory: use a coarser grid, larger voxels, fewer samples or fewer parts"
+    if isinstance(error, ImportError):  # a library that is broken, or that there is no memory for
+        return f"a part of the installation cannot be loaded: {error}"
+    return str(error)

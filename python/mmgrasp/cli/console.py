@@ -10,7 +10,7 @@ import sys
 import time
 from collections.abc import Callable, Mapping
 from types import TracebackType
-from typing import Any
+from typing import Any, NoReturn
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
@@ -33,6 +33,21 @@ def open_streams() -> None:
             stream.reconfigure(errors="backslashreplace")
 
 
+def leave_streams() -> None:
+    """Output and errors lead nowhere from here: what is still in their buffers cannot be written, not even when the interpreter ends."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    for number in (1, 2):
+        os.dup2(nowhere, number)
+
+
+class CommandConsole(Console):
+    """A console that leaves it to the command what becomes of output that nobody reads."""
+
+    def on_broken_pipe(self) -> NoReturn:
+        """Called where writing failed; rich would end the process with the code of a plan with faults."""
+        raise BrokenPipeError
+
+
 class Reporter:
     """Called with (stage, fraction); shows each stage once, in the order they begin."""
 
@@ -48,7 +63,7 @@ class Reporter:
                 TextColumn("{task.percentage:>3.0f} %"),
                 TimeElapsedColumn(),
             )
-            self._bars = Progress(*columns, console=Console(stderr=True, highlight=False))
+            self._bars = Progress(*columns, console=CommandConsole(stderr=True, highlight=False))
 
     def __enter__(self) -> Reporter:
         if self._bars:

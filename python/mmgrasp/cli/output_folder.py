@@ -6,39 +6,39 @@ import contextlib
 import json
 import os
 import shutil
-import signal
 import tempfile
-import threading
 from collections.abc import Iterator
 from fnmatch import fnmatchcase
 from pathlib import Path, PurePosixPath
 
 from .._core import InvalidInput, IoError
-from .._files import check_folder, read_text, write_file
+from .._files import DRAFT, check_folder, read_text, temporary_room, write_file
+from .signals import uninterrupted
 
 LIST = "files.json"
 PLAN_FILES = (
     *("plan.json", "timings.json", "drive_by.json", "report.html", LIST, "trajectories"),
     *("topview.png", "regions.png", "stop_*.png", "pick_*.png"),
 )
-_DRAFT = ".writing."
 _LARGEST_LIST = 100_000_000
 
 
 @contextlib.contextmanager
-def uninterrupted() -> Iterator[None]:
-    """Ctrl-C within the block counts when it ends. (Only the main thread is ever interrupted.)"""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    came: list[int] = []
-    before = signal.signal(signal.SIGINT, lambda number, frame: came.append(number))
+def _removed_draft(path: Path) -> Iterator[Path]:
+    """A folder to write into, gone after the block: also where no more files can be opened, for which one handle is kept back."""
     try:
-        yield
+        spare = os.open(os.devnull, os.O_RDONLY)
+        draft = Path(tempfile.mkdtemp(dir=path, prefix=DRAFT))
+    except OSError as error:
+        raise IoError(f"{path}: cannot be written: {error.strerror}") from None
+    try:
+        yield draft
     finally:
-        signal.signal(signal.SIGINT, signal.SIG_DFL if before is None else before)  # None: not Python's
-    if came:
-        signal.raise_signal(signal.SIGINT)
+        os.close(spare)
+        for folder, _, files in os.walk(draft, topdown=False):  # one handle at a time, unlike shutil.rmtree
+            for name in files:
+                os.unlink(os.path.join(folder, name))
+            os.rmdir(folder)
 
 
 class OutputFolder:
@@ -73,19 +73,18 @@ class OutputFolder:
         `added`: to what is there already, instead of in the place of everything; older files of the pattern `replacing` go all the same.
         """
         self.path.mkdir(parents=True, exist_ok=True)
-        for left in self.path.glob(f"{_DRAFT}*"):  # of a run that was killed
+        for left in self.path.glob(f"{DRAFT}*"):  # of a run that was killed
             shutil.rmtree(left, ignore_errors=True)
-        draft = Path(tempfile.mkdtemp(dir=self.path, prefix=_DRAFT))
-        try:
-            yield draft
-            with uninterrupted():
-                self._take_over(draft, added, replacing)
-        except OSError as error:
-            if isinstance(error, IoError):
-                raise
-            raise IoError(f"{self.path}: cannot be written: {error.strerror or error}") from None
-        finally:
-            shutil.rmtree(draft, ignore_errors=True)
+        with _removed_draft(self.path) as draft:
+            try:
+                with temporary_room(self.path):
+                    yield draft
+                with uninterrupted():
+                    self._take_over(draft, added, replacing)
+            except OSError as error:
+                if isinstance(error, (IoError, BrokenPipeError)):
+                    raise
+                raise IoError(f"{self.path}: cannot be written: {error.strerror or error}") from None
 
     def _take_over(self, draft: Path, added: bool, replacing: str) -> None:
         written = {str(p.relative_to(draft).as_posix()) for p in draft.rglob("*") if p.is_file()} | {LIST}

@@ -7,7 +7,7 @@ import json
 import math
 import reprlib
 import unicodedata
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -291,22 +291,49 @@ def read_json(path: Path) -> Document:
             raise InvalidInput(f"{shown}: the key {twice!r} is given twice")
         return out
 
-    def no_number(word: str) -> NoReturn:
-        raise InvalidInput(f"{shown}: {word} is no number in JSON")
+    wrong: list[_NoNumber] = []
 
-    def integer(digits: str) -> int:
-        if len(digits) > 300:
-            raise InvalidInput(f"{shown}: a number has {len(digits)} digits")
-        return int(digits)
+    def no_number(rule: str) -> _NoNumber:
+        wrong.append(_NoNumber(rule))  # where it stands is known when all is read
+        return wrong[-1]
+
+    def integer(digits: str) -> int | _NoNumber:
+        return int(digits) if len(digits) <= 300 else no_number(f"a number has {len(digits)} digits")
 
     try:
-        raw = json.loads(text, object_pairs_hook=once, parse_constant=no_number, parse_int=integer)
+        raw = json.loads(
+            text,
+            object_pairs_hook=once,
+            parse_constant=lambda word: no_number(f"{word} is no number in JSON"),
+            parse_int=integer,
+        )
     except json.JSONDecodeError as error:
         raise InvalidInput(f"{shown}:{error.lineno}: is no valid JSON: {error.msg}") from None
     except RecursionError:
         raise InvalidInput(f"{shown}: is nested too deeply") from None
     check_depth(raw, str(path))
-    return Document(str(path), raw, {})
+    document = Document(str(path), raw, {})
+    if wrong:
+        _refuse_no_numbers(document.root)
+    return document
+
+
+class _NoNumber:
+    """What stands for a number in a JSON text and is none."""
+
+    def __init__(self, rule: str) -> None:
+        self.rule = rule
+
+
+def _refuse_no_numbers(node: Node) -> None:
+    """Raises InvalidInput with the place of the first of them."""
+    if isinstance(node.raw, _NoNumber):
+        raise InvalidInput(printable(f"{node.place}: {node.name}: {node.raw.rule}"))
+    keys: Iterable[Key] = (
+        node.raw if isinstance(node.raw, dict) else range(len(node.raw)) if isinstance(node.raw, list) else ()
+    )
+    for key in keys:
+        _refuse_no_numbers(node.child(key))
 
 
 def check_depth(raw: Any, source: str) -> None:

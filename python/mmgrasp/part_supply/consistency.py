@@ -20,7 +20,10 @@ _CLOSE = 1e-6  # [m], [rad]
 
 def check_consistency(plan: Plan) -> list[checks.Fault]:
     """Faults of a solved plan whose form is that of the schema."""
-    rules = (_hand, _options, _trays, _regions, _intersections, _stops, _route, _in_passing, _answer, _premises)
+    rules = (
+        *(_hand, _options, _trays, _grid, _regions, _intersections, _stops, _counts),
+        *(_route, _in_passing, _answer, _premises),
+    )
     return [checks.Fault("wrong-values", where, message) for rule in rules for where, message in rule(plan)]
 
 
@@ -70,6 +73,29 @@ def _trays(plan: Plan) -> Found:
         body = obstacles.get(f"tray {tray['name']}")
         if body is None or not _same([body["pose"], body["shapes"]], [tray["pose"], walls]):
             yield where, "has no obstacle with its walls, pose and size"
+
+
+def _grid(plan: Plan) -> Found:
+    """The grid covers what lies within one distance of every tray that is picked from, to whole cells."""
+    scenario, grid = plan["scenario"], plan["grid"]
+    picked = {part["tray"] for part in scenario["parts"] if part["target"]}
+    trays = [tray for tray in scenario["trays"] if tray["name"] in picked]
+    if not trays:
+        return
+    cell, given = grid["resolution"], scenario["options"].get("grid_max_distance", 0.0)
+    first = np.array(grid["origin"]) / cell
+    if np.abs(first - np.round(first)).max() > _CLOSE:
+        yield "grid.origin", f"must be whole cells of {cell:g} m from the world's origin"
+        return
+    last = np.round(first) + [grid["nx"], grid["ny"]]
+    middles = np.array([tray["pose"]["xyz"][:2] for tray in trays])
+    # Without a given distance it is the arm's, which the plan does not store, beyond half of a tray's diagonal.
+    half = np.array([[0.0 if given > 0 else 0.5 * np.hypot(*tray["size"][:2])] for tray in trays])
+    most = np.concatenate([(middles - half).min(0) - cell * np.round(first), cell * last - (middles + half).max(0)])
+    least = most - cell
+    low, high = (given, given) if given > 0 else (float(least.max()), float(most.min()))
+    if max(low, float(least.max())) > min(high, float(most.min())) + _CLOSE:
+        yield "grid", f"does not reach equally far, {most.min():g} m or so, beyond the trays on all sides"
 
 
 def _regions(plan: Plan) -> Found:
@@ -140,6 +166,18 @@ def _stops(plan: Plan) -> Found:
         )
         if said["trays"] != stop["trays"] or not same_heading:
             yield f"stops[{i}].intersection", f"intersection {index} has other trays or another heading"
+
+
+def _counts(plan: Plan) -> Found:
+    """Shares are of so many base poses as the options say."""
+    samples = plan["scenario"]["options"].get("robustness_samples", 0)
+    shares_of = max(samples, 1)
+    for i, stop in enumerate(plan["stops"]):
+        if "arrivals" in stop and stop["arrivals"]["drawn"] != samples:
+            yield f"stops[{i}].arrivals.drawn", f"is {stop['arrivals']['drawn']}, robustness_samples is {samples}"
+    poses = plan["robustness_rate"] * shares_of
+    if abs(poses - round(poses)) > _CLOSE:
+        yield "robustness_rate", f"is {plan['robustness_rate']:g}: no share of {shares_of} base poses"
 
 
 def _route(plan: Plan) -> Found:

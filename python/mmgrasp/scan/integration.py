@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -17,9 +17,11 @@ from ..frames.intrinsics import Intrinsics
 from ..frames.sensors import Sensor
 
 STAGE = "integrating frames"
+PROGRESS_FILE = "progress.json"
 DEFAULTS: dict[str, Any] = {name: value for name, (value, _) in _sdf_option_table().items()}
 """Defaults of the library's options."""
 _MOST_INVERTED = 3
+_PUT_BACK = "put it back, or make the map anew with --start-over"
 
 
 @dataclass(frozen=True)
@@ -249,16 +251,23 @@ def _compare_sensors(folder: FrameFolder, scan: Scan) -> None:
             continue
         at = was["intrinsics"]
         if sensor.intrinsics is None and at is not None:
-            sized = Intrinsics(at["fx"], at["fy"], at["cx"], at["cy"], at["width"], at["height"], "progress.json")
+            sized = Intrinsics(at["fx"], at["fy"], at["cx"], at["cy"], at["width"], at["height"], PROGRESS_FILE)
             sensor = Sensor(**{**vars(sensor), "intrinsics": sized})
         folder.sensors[name] = sensor
         now = described(folder, sensor)
-        for key in now:
-            if now[key] != was.get(key):
-                raise InvalidInput(
-                    f"{sensor.shown}: {key} = {now[key]}: the map was made with {was.get(key)}: "
-                    "put it back, or make the map anew with --start-over"
-                )
+        for key, new, old in _differences(now, was):
+            raise InvalidInput(
+                f"{sensor.shown}: {key} = {new}: the map was made with {old} ({PROGRESS_FILE}: sensors.{name}.{key}): {_PUT_BACK}"
+            )
+
+
+def _differences(now: Any, was: Any, key: str = "") -> Iterator[tuple[str, Any, Any]]:
+    """Keys whose values differ, with the new and the old one."""
+    if isinstance(now, dict) and isinstance(was, dict):
+        for name in now:
+            yield from _differences(now[name], was.get(name), f"{key}.{name}" if key else name)
+    elif now != was:
+        yield key, now, was
 
 
 def _check_missing(folder: FrameFolder, scan: Scan, sensor: str) -> None:
@@ -268,7 +277,7 @@ def _check_missing(folder: FrameFolder, scan: Scan, sensor: str) -> None:
     if frame is not None:
         raise InvalidInput(
             f"{frame}: was integrated as a frame of sensor '{sensor}', and the sensors are {', '.join(folder.sensors) or 'unknown'} now: "
-            "put it back, or make the map anew with --start-over"
+            f"{_PUT_BACK}"
         )
 
 
@@ -289,6 +298,5 @@ def _compare_frames(folder: FrameFolder, scan: Scan, progress: Progress) -> None
             same = False
         if not same:
             raise InvalidInput(
-                f"{record.name}: is in the map, but its image or pose has changed since: "
-                "put it back, or make the map anew with --start-over"
+                f"{record.name}: is in the map, but its image or pose has changed since ({PROGRESS_FILE}: frames[{i}].digest): {_PUT_BACK}"
             )

@@ -6,13 +6,21 @@ from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any, TypeVar
 
+import numpy as np
+
 from .._core import InvalidInput, IoError, ProbabilisticSdf, __version__
+from .._files import printable
 from ..documents.reading import Node, read_json
+from ..frames.intrinsics import Intrinsics
+from ..frames.poses import rigid
+from ..frames.sensors import Sensor
+from .integration import PROGRESS_FILE as PROGRESS_FILE
 from .integration import FrameRecord, Scan, ScanOptions, SkippedFrame
 
 FORMAT, VERSION = "mmgrasp-scan", 1
-PROGRESS_FILE = "progress.json"
 Row = TypeVar("Row", FrameRecord, SkippedFrame)
+LARGEST_MEMORY = 1e13  # [bytes], as the command's option
+_FATES = ("used", "out_of_range", "too_noisy", "too_slanted", "without_normal")
 _AGAIN = "make the map anew with --start-over"
 
 
@@ -34,12 +42,17 @@ def read_scan(path: Path) -> Scan:
     """The scan whose progress.json this is, with its map. Raises InvalidInput or IoError naming file, key, value and rule."""
     root = read_json(path).root
     if "format" not in root or root["format"].raw != FORMAT:
-        raise InvalidInput(f"{path}: is no progress of mmgrasp scan: {_AGAIN}, or choose another folder")
+        found = repr(root["format"].raw)[:40] if "format" in root else "missing"
+        raise InvalidInput(
+            printable(f"{path}: format is {found}: is no progress of mmgrasp scan: {_AGAIN}, or choose another folder")
+        )
     if root["version"].integer() != VERSION:
         root["version"].fail(f"this version of mmgrasp reads version {VERSION}: {_AGAIN}")
     root.mapping("format version mmgrasp map options sensors frames skipped")
+    root["mmgrasp"].string()
     options = root["options"].mapping("voxel truncation max_memory")
-    values = [_positive(options[key]) for key in ("voxel", "truncation", "max_memory")]
+    values = [options["voxel"].number(above=0), options["truncation"].number(above=0)]
+    values.append(options["max_memory"].number(above=0, most=LARGEST_MEMORY))
     name = root["map"].string()
     if "/" in name or not name.endswith(".sdf"):
         root["map"].fail("must be a file in the same folder")
@@ -75,19 +88,37 @@ def _check_map(scan: Scan, path: Path, progress: Path) -> None:
         raise InvalidInput(f"{path}: holds {sdf.frames} frames, {progress.name} names {len(scan.frames)}: {_AGAIN}")
 
 
-def _positive(node: Node) -> float:
-    if isinstance(node.raw, bool) or not isinstance(node.raw, int | float) or not node.raw > 0:
-        node.fail("must be a positive number")
-    return float(node.raw)
-
-
 def _sensor(node: Node) -> dict[str, Any]:
-    node.mapping("intrinsics", " ".join(key for key, _ in node.items()))
-    if node["intrinsics"].raw is not None:
-        at = node["intrinsics"].mapping("width height fx fy cx cy")
-        for key, value in at.items():
-            value.integer(least=1) if key in ("width", "height") else value.number()
+    """What Sensor.to_dict wrote, in that form."""
+    example = Sensor("", intrinsics=Intrinsics(1.0, 1.0, 1.0, 1.0, 1, 1, ""), depth_scale=1.0, T_link_camera=np.eye(4))
+    _check_like(node, example.to_dict())
     return dict(node.raw)
+
+
+_MAY_BE_NULL = ("intrinsics", "depth_scale", "T_link_camera")
+
+
+def _check_like(node: Node, example: Any) -> None:
+    """Raises InvalidInput unless the value has the form of the example: keys, lengths of lists, and what is a number or a text."""
+    if node.raw is None and node.path[-1] in _MAY_BE_NULL:
+        return
+    if isinstance(example, dict):
+        node.mapping(" ".join(example))
+        for key, value in example.items():
+            _check_like(node[key], value)
+    elif isinstance(example, list):
+        elements = node.elements()
+        if len(elements) != len(example):
+            node.fail(f"must be a list of {len(example)}")
+        for element, value in zip(elements, example, strict=True):
+            _check_like(element, value)
+    elif isinstance(example, str):
+        if not isinstance(node.raw, str):
+            node.fail("must be a text")
+    elif isinstance(example, int):
+        node.integer(least=1)
+    else:
+        node.number()
 
 
 def _record(node: Node, kind: type[Row]) -> Row:
@@ -106,5 +137,8 @@ def _record(node: Node, kind: type[Row]) -> Row:
         else:
             if child.array(4).shape != (4, 4):
                 child.fail("must be a pose, 4 x 4 numbers")
+            rigid(np.array(child.raw), f"{child.place}: {child.name}")
             values[f.name] = child.raw
+    if kind is FrameRecord and values["measured"] != sum(values[key] for key in _FATES):
+        node["measured"].fail("must be the sum of " + ", ".join(_FATES))
     return kind(**values)

@@ -20,7 +20,9 @@ def write_obj(path: Path, mesh: mg.Mesh) -> None:
 
 # A pin on a foot, and a bush that goes over it.
 write_obj(Path("pin.obj"), turned([[0, 0], [0.02, 0], [0.02, 0.008], [0.006, 0.008], [0.006, 0.05], [0, 0.05]]))
-write_obj(Path("bush.obj"), turned([[0.0061, 0], [0.015, 0], [0.015, 0.012], [0.01, 0.012], [0.01, 0.022], [0.0061, 0.022]]))
+write_obj(
+    Path("bush.obj"), turned([[0.0061, 0], [0.015, 0], [0.015, 0.012], [0.01, 0.012], [0.01, 0.022], [0.0061, 0.022]])
+)
 Path("assembly.yaml").write_text("""
 format: mmgrasp-assembly
 version: 1

@@ -47,7 +47,8 @@ void bind_contact_area(py::module_& m) {
                             limit_of(pad_radius, "pad_radius"));
       },
       "force"_a, "wall_radius"_a, "length"_a, py::kw_only(), "pad_width"_a, "modulus"_a, "pad_radius"_a = py::none(),
-      "A pad on a round wall along its axis: Hertz' line contact (Johnson 1985, 4.2), no wider than the pad. Force [N], "
+      "A pad on a round wall along its axis: Hertz' line contact (Johnson 1985, 4.2), no wider than the pad. Force "
+      "[N], "
       "lengths [m], the modulus of both surfaces together [Pa]; `pad_radius`: of a hollow pad, None: a flat one.");
   m.def(
       "soft_finger_torque",
@@ -66,17 +67,18 @@ void bind_holding(py::module_& m) {
   py::class_<F>(m, "FingerGrip",
                 "How fingers press and what their pads are made of.\n\n"
                 "    FingerGrip(force=40, friction=0.6, modulus=3e6)")
-      .def(py::init([](const Given<double>& force, const Given<double>& friction, const Given<double>& modulus,
-                       const std::optional<Given<double>>& pad_radius) {
-             const F grip{taken(force, "force"), taken(friction, "friction"), taken(modulus, "modulus"),
-                          limit_of(pad_radius, "pad_radius")};
-             grip.check();
-             return grip;
-           }),
-           py::kw_only(), "force"_a = F{}.force, "friction"_a = F{}.friction, "modulus"_a = F{}.modulus,
-           "pad_radius"_a = py::none(),
-           "Force of each finger [N], Coulomb's coefficient, plane strain modulus of pad and part together [Pa], radius "
-           "of hollow pads [m] (None: flat).")
+      .def(
+          py::init([](const Given<double>& force, const Given<double>& friction, const Given<double>& modulus,
+                      const std::optional<Given<double>>& pad_radius) {
+            const F grip{taken(force, "force"), taken(friction, "friction"), taken(modulus, "modulus"),
+                         limit_of(pad_radius, "pad_radius")};
+            grip.check();
+            return grip;
+          }),
+          py::kw_only(), "force"_a = F{}.force, "friction"_a = F{}.friction, "modulus"_a = F{}.modulus,
+          "pad_radius"_a = py::none(),
+          "Force of each finger [N], Coulomb's coefficient, plane strain modulus of pad and part together [Pa], radius "
+          "of hollow pads [m] (None: flat).")
       .def_readonly("force", &F::force, "Of each finger [N].")
       .def_readonly("friction", &F::friction, "Coulomb's coefficient between pad and part.")
       .def_readonly("modulus", &F::modulus, "Plane strain modulus of pad and part together [Pa].")
@@ -100,9 +102,8 @@ void bind_holding(py::module_& m) {
                     "about the hole's axis.")
       .def_readonly("safety", &H::safety,
                     "The loads may grow at least by this factor before a pad slips; infinite without loads.")
-      .def("__repr__", [](const H& h) {
-        return "GraspHolding(safety " + std::string(py::repr(py::float_(h.safety))) + ")";
-      });
+      .def("__repr__",
+           [](const H& h) { return "GraspHolding(safety " + std::string(py::repr(py::float_(h.safety))) + ")"; });
   m.def(
       "grasp_holding",
       [](const Given<AssemblyGrasp>& grasp, const Given<FingerGrip>& grip, const OptionalArray& weight,
@@ -111,10 +112,11 @@ void bind_holding(py::module_& m) {
                                 given_or_zero(resistance, "resistance"), given_or_zero(hole, "hole")};
         return grasp_holding(taken(grasp, "grasp"), taken(grip, "grip"), load);
       },
-      "grasp"_a, "grip"_a, py::kw_only(), "weight"_a = py::none(), "centre"_a = py::none(),
-      "resistance"_a = py::none(), "hole"_a = py::none(),
+      "grasp"_a, "grip"_a, py::kw_only(), "weight"_a = py::none(), "centre"_a = py::none(), "resistance"_a = py::none(),
+      "hole"_a = py::none(),
       "Whether soft fingers hold a part against its weight, and against weight and insertion (P1 5.3.5). `weight` [N] "
-      "acts at `centre` [m], `resistance` of the insertion [N], against the motion, at `hole` [m], a point on the hole's "
+      "acts at `centre` [m], `resistance` of the insertion [N], against the motion, at `hole` [m], a point on the "
+      "hole's "
       "axis; (3,), in the frame of the grasp's pose, None: zero. The grasp must know its contact_length and "
       "contact_width. Loads are shared so that the sum of squares is least, which bounds what can be held from below; "
       "pads slip by the limit surface of soft_finger_torque.");

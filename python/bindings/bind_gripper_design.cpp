@@ -253,8 +253,7 @@ void bind_gripper_design(py::module_& m) {
       "preferred_grippers",
       [](const Given<std::vector<SegmentRequirement>>& requirements, const ArrayLike& values,
          const Given<std::vector<GripperActuator>>& actuators, const Progress& progress, const py::kwargs& keywords) {
-        const MinimalGrippersOptions options =
-            read_options(minimal_grippers_fields(), keywords, "preferred_grippers");
+        const MinimalGrippersOptions options = read_options(minimal_grippers_fields(), keywords, "preferred_grippers");
         const auto asked = taken(requirements, "requirements", "SegmentRequirement");
         const auto drives = taken(actuators, "actuators", "GripperActuator");
         const Eigen::VectorXd given = vector_argument(values, "values");
@@ -263,7 +262,8 @@ void bind_gripper_design(py::module_& m) {
             [&](const Monitor& monitor) { return preferred_grippers(asked, worth, drives, options, monitor); });
       },
       "requirements"_a, "values"_a, "actuators"_a, py::kw_only(), "progress"_a = py::none(),
-      ("A set of no higher cost and no more changes than minimal_grippers' that takes each part by its best segment, as "
+      ("A set of no higher cost and no more changes than minimal_grippers' that takes each part by its best segment, "
+       "as "
        "far as one does: parts in the order of assembly, of each the requirements by `values` (one per requirement), "
        "highest first." +
        option_help(minimal_grippers_fields()))

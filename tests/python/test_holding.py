@@ -167,7 +167,7 @@ def test_an_assembly_file_asks_for_what_is_held(tmp_path: Path) -> None:
 def test_wrong_loads_are_refused_at_their_line(tmp_path: Path, insertion: str, holding: str, message: str) -> None:
     file = tmp_path / "peg.yaml"
     file.write_text(PEG.format(insertion=insertion, holding=holding))
-    with pytest.raises(mg.InvalidInput, match="peg.yaml") as caught:
+    with pytest.raises(mg.InvalidInput, match=r"peg\.yaml") as caught:
         load_assembly(file)
     assert message in str(caught.value)
 

@@ -15,8 +15,8 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 using Wrench = Eigen::Matrix<double, 6, 1>;
 
-constexpr int kPerPad = 4;            // pressure, two tangential forces, torque
-constexpr double kBalanced = 1e-9;    // residual of the balance that counts as none, relative to the load
+constexpr int kPerPad = 4;          // pressure, two tangential forces, torque
+constexpr double kBalanced = 1e-9;  // residual of the balance that counts as none, relative to the load
 
 /// The pads of a grasp in the tool frame, and what each of them does to the part.
 struct Pads {

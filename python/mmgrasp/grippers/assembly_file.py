@@ -252,9 +252,7 @@ def _read_order(node: Node, parts: dict[str, AssemblyPart], scale: float) -> lis
     return steps
 
 
-def _read_insertion(
-    operation: Node, path: list[Pose], scale: float
-) -> tuple[float, NDArray[np.float64] | None]:
+def _read_insertion(operation: Node, path: list[Pose], scale: float) -> tuple[float, NDArray[np.float64] | None]:
     """Force of the hole's resistance [N] and a point on its axis."""
     if "insertion" not in operation:
         return 0.0, None

@@ -84,9 +84,7 @@ def held_by(grasp: AssemblyGrasp, load: OperationLoad | None) -> Held | None:
     if load is None:
         return None
     found = [
-        _core.grasp_holding(
-            grasp, load.grip, weight=weight, centre=load.centre, resistance=resistance, hole=load.hole
-        )
+        _core.grasp_holding(grasp, load.grip, weight=weight, centre=load.centre, resistance=resistance, hole=load.hole)
         for weight, resistance in [
             *((w, np.zeros(3)) for w in load.weights[:-1]),
             (load.weights[-1], load.resistance),

@@ -76,9 +76,7 @@ def figure_5_14(context: Context) -> Result:
     for k, gripper in enumerate(ours, 1):
         stroke = (gripper.max_opening - gripper.min_opening) / 2
         measured = [1e3 * opening_of(gripper, joint) for joint in (0.0, stroke)]
-        worst = max(
-            worst, abs(measured[0] - 1e3 * gripper.min_opening), abs(measured[1] - 1e3 * gripper.max_opening)
-        )
+        worst = max(worst, abs(measured[0] - 1e3 * gripper.min_opening), abs(measured[1] - 1e3 * gripper.max_opening))
         index = list(found.grippers).index(gripper) if gripper in found.grippers else -1
         values = result.row({"whose": "ours", "gripper": k, "fingers": gripper.fingers})
         values["opening from [mm]"] = (None, round(1e3 * gripper.min_opening, 3))
@@ -180,9 +178,7 @@ def figure_5_16(context: Context) -> Result:
     result.exact("the lengths that figure 5.13 prints are found again within 0.1 mm", worst <= 0.1)
     result.exact("as few grippers as can be, proven", found.lower_bound == len(found.grippers))
     if not context.quick:
-        result.exact(
-            "five grippers from the meshes, as from the openings of figure 5.13", len(found.grippers) == 5
-        )
+        result.exact("five grippers from the meshes, as from the openings of figure 5.13", len(found.grippers) == 5)
     result.notes.append(
         "The paper shows photographs; heights and places are ours, made so that the printed lengths follow (`mmgrasp.grippers.motor_product`): from mesh to segment, grasp and length they are "
         "found, not given. What the gripper meets is told by the collision checker, with the gripper's own files, on the approach, on the way and while it lets go."

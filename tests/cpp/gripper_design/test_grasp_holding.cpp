@@ -43,7 +43,8 @@ TEST(SoftContact, LineContactIsHertz) {
   // Johnson 1985 (4.43): b^2 = 4 (F / l) R / (pi E).
   const ContactArea c = line_contact(40, 0.02, 0.01, 1, 2e6, kInfinite);
   EXPECT_NEAR(c.width / 2, std::sqrt(4 * (40 / 0.01) * 0.02 / (M_PI * 2e6)), 1e-12);
-  // Half an ellipse of pressure across a line without length: mean distance 4 b / (3 pi); along one without width l / 4.
+  // Half an ellipse of pressure across a line without length: mean distance 4 b / (3 pi); along one without width l
+  // / 4.
   const ContactArea across = line_contact(1e-3, 0.02, 1e-7, 1, 2e6, kInfinite);
   EXPECT_NEAR(across.torsion_radius / (across.width / 2), 4 / (3 * M_PI), 1e-5);
   const ContactArea along = line_contact(1e-9, 0.02, 0.01, 1, 2e9, kInfinite);

@@ -41,7 +41,7 @@ struct MMGRASP_EXPORT AssemblyGrasp {
   double palm_radius = 0.03;  ///< Radius of the palm and of all behind it, about the tool's z [m]; > 0.
   /// By how much a pad overlaps what it holds, along the approach from the tips and across it [m]; >= 0, 0: not known.
   double contact_length = 0, contact_width = 0;
-  void check() const;         ///< Throws InvalidInput naming field, value and rule.
+  void check() const;  ///< Throws InvalidInput naming field, value and rule.
 };
 
 /// Which finger lengths take a part through an operation: P1's L- and L+, from the geometry alone. Where there is none,

@@ -21,8 +21,8 @@ struct MMGRASP_EXPORT FingerGrip {
 
 /// What the held parts weigh, and what the hole does to them: everything in the frame of the grasp's pose.
 struct MMGRASP_EXPORT AssemblyLoad {
-  Eigen::Vector3d weight = Eigen::Vector3d::Zero();  ///< Force of gravity [N].
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< Where it acts [m].
+  Eigen::Vector3d weight = Eigen::Vector3d::Zero();      ///< Force of gravity [N].
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();      ///< Where it acts [m].
   Eigen::Vector3d resistance = Eigen::Vector3d::Zero();  ///< Of the insertion: against the motion [N].
   Eigen::Vector3d hole = Eigen::Vector3d::Zero();        ///< A point on the hole's axis, where it acts [m].
   void check() const;                                    ///< Throws InvalidInput: numbers that are none.

@@ -18,11 +18,11 @@ def write_obj(path: Path, mesh: mg.Mesh) -> None:
     path.write_text("\n".join(lines) + "\n")
 
 
-# A pin on a foot, and a bush that goes over it.
-write_obj(Path("pin.obj"), turned([[0, 0], [0.02, 0], [0.02, 0.008], [0.006, 0.008], [0.006, 0.05], [0, 0.05]]))
-write_obj(
-    Path("bush.obj"), turned([[0.0061, 0], [0.015, 0], [0.015, 0.012], [0.01, 0.012], [0.01, 0.022], [0.0061, 0.022]])
-)
+# A pin on a foot, and a bush that goes over it: closed profiles of (radius, z) [mm].
+PIN = np.array([(0, 0), (20, 0), (20, 8), (6, 8), (6, 50), (0, 50)])
+BUSH = np.array([(6.1, 0), (15, 0), (15, 12), (10, 12), (10, 22), (6.1, 22)])
+write_obj(Path("pin.obj"), turned(1e-3 * PIN))
+write_obj(Path("bush.obj"), turned(1e-3 * BUSH))
 Path("assembly.yaml").write_text("""
 format: mmgrasp-assembly
 version: 1

@@ -8,6 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from mmgrasp._core import fit_primitives, segment_mesh
 from mmgrasp.grippers.motor import PARTS, ROTOR, SLEEVE, Composed
 from mmgrasp.grippers.turned_parts import SIDES, lofted
 from mmgrasp.reproduce.gripper_sets import SEGMENTS
@@ -81,3 +82,15 @@ def test_round_walls_are_for_three_fingers_and_flat_sides_for_two() -> None:
     assert opening_found(60, 3, seen["offered"]) != pytest.approx(60, abs=0.1)
     assert opening_found(40, 2, seen["offered"]) != pytest.approx(40, abs=0.1)
     assert opening_found(40, 3, [{"kind": "box", "widths": [40.0]}]) is None
+
+
+@pytest.mark.parametrize("name", ["5", "9"])
+def test_a_cylinder_is_as_long_as_its_wall_though_its_bore_runs_on(name: str) -> None:
+    """The bore's faces run through both bodies and belong to one of the segments; fingers hold outer walls only."""
+    mesh = PARTS[name].mesh()
+    found = {round(1e3 * fit.size[0]): fit for fit in fit_primitives(mesh, segment_mesh(mesh).labels)}
+    for (section, height), low in zip(PARTS[name].bodies, PARTS[name].heights(), strict=False):
+        assert isinstance(section, float)
+        fit = found[round(2 * section)]
+        assert 1e3 * fit.size[2] == pytest.approx(height, abs=0.1)
+        assert 1e3 * fit.T_mesh_primitive[2, 3] == pytest.approx(low + height / 2, abs=0.1)

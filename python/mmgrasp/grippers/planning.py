@@ -27,6 +27,7 @@ from .holding import Held, OperationLoad, held_by, load_of, preference, rank
 from .rehearsal import rehearse
 
 PALM_MARGIN = 0.005  # [m]
+FINGERS_OF = {"box": 2, "cylinder": 3}  # P1 5.2.1
 
 
 SLIPS = "pads slip: the grasp does not hold weight and insertion"
@@ -185,7 +186,7 @@ def _judge(
     plan: GripperPlan, step: AssemblyStep, operation: AssemblyOperation, part: AssemblyPart, segment: int
 ) -> SegmentFate:
     primitive = plan.primitives[part.name][segment]
-    fingers = {"box": 2, "cylinder": 3}.get(primitive.kind, 0)
+    fingers = FINGERS_OF.get(primitive.kind, 0)
     fate = SegmentFate(step.name, part.name, segment, primitive.kind, fingers)
     if segment in part.keep_off:
         fate.refused = "not to be touched"
@@ -198,17 +199,15 @@ def _judge(
     elif fingers not in {a.fingers for a in plan.assembly.actuators}:
         fate.refused = f"no actuator has {fingers} fingers"
     else:
-        _try_grasps(plan, fate, operation, part, primitive)
+        _try_grasps(plan, fate, operation, part)
     return fate
 
 
-def _try_grasps(
-    plan: GripperPlan, fate: SegmentFate, operation: AssemblyOperation, part: AssemblyPart, primitive: FittedPrimitive
-) -> None:
+def _try_grasps(plan: GripperPlan, fate: SegmentFate, operation: AssemblyOperation, part: AssemblyPart) -> None:
     found: list[Found] = []
     causes: collections.Counter[str] = collections.Counter()
     least_safety = 0.0 if plan.assembly.holding is None else plan.assembly.holding.least_safety
-    for grasp in _candidates(plan, fate, part, primitive):
+    for grasp in segment_grasps(plan, part.name, fate.segment):
         fate.tried += 1
         lengths = _core.finger_length_range(grasp, operation)
         fingers = plan.assembly.fingers
@@ -267,12 +266,11 @@ def _undominated(found: list[Found]) -> list[Found]:
     return kept
 
 
-def _candidates(
-    plan: GripperPlan, fate: SegmentFate, part: AssemblyPart, primitive: FittedPrimitive
-) -> list[AssemblyGrasp]:
-    """Grasps of the segment in the assembly's frame, with the palm of the widest gripper that may take it."""
-    choice = plan.assembly.fingers
-    drives = [a for a in plan.assembly.actuators if a.fingers == fate.fingers]
+def segment_grasps(plan: GripperPlan, name: str, segment: int) -> list[AssemblyGrasp]:
+    """Grasps of a part's box or cylinder in the assembly's frame, with the palm of the widest gripper that may take it."""
+    part, primitive, choice = plan.assembly.parts[name], plan.primitives[name][segment], plan.assembly.fingers
+    fingers = FINGERS_OF[primitive.kind]
+    drives = [a for a in plan.assembly.actuators if a.fingers == fingers]
     widest = [a.max_opening for a in drives]
     options: dict[str, Any] = {
         "directions": choice.directions,
@@ -283,8 +281,8 @@ def _candidates(
         "clearance": choice.clearance,
         "max_opening": 2.0 if None in widest else max(w for w in widest if w is not None),
     }
-    if fate.fingers == 2:
-        faces = [int(f) for f in plan.segmentations[part.name].segments[fate.segment].faces]
+    if fingers == 2:
+        faces = [int(f) for f in plan.segmentations[name].segments[segment].faces]
         grasps = _core.jaw_grasps(part.mesh, faces, **options)
     else:
         length = float(primitive.size[2])

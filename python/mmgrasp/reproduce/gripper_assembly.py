@@ -9,10 +9,19 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .. import _core
-from .._core import CollisionChecker, Cylinder, Gripper, GripperActuator, LinkShape, World, minimal_grippers
+from .._core import (
+    CollisionChecker,
+    Cylinder,
+    Gripper,
+    GripperActuator,
+    LinkShape,
+    World,
+    finger_length_range,
+    minimal_grippers,
+)
 from ..grippers.assembly_file import FingerChoice
 from ..grippers.motor_product import CONTACT, ORDER, motor_product
-from ..grippers.planning import GripperPlan, plan_grippers
+from ..grippers.planning import FINGERS_OF, GripperPlan, operation_of, plan_grippers, segment_grasps
 from ..grippers.rehearsal import free_gripper
 from ..viz.gripper_pictures import gripper_bodies
 from ..viz.style import OBSTACLE, PART
@@ -130,13 +139,19 @@ def assembled(quick: bool) -> GripperPlan:
 
 def least_length(plan: GripperPlan, part: str, fingers: int, opening: float) -> float | None:
     """Least finger length by which a segment is held from above, at full size [mm]."""
-    lengths = [
-        1e3 * r.min_finger_length / SCALE
-        for r, g in zip(plan.requirements, plan.grasps, strict=True)
-        if r.part == part and r.fingers == fingers and abs(1e3 * r.opening / SCALE - opening) < 0.2
-        if g.T_active_tool[2, 2] < -0.999
-    ]
-    return min(lengths, default=None)
+    step = next(step for step in plan.assembly.steps if step.name == part)
+    operation = operation_of(plan.assembly, step)
+    least = None
+    for segment, primitive in enumerate(plan.primitives[part]):
+        if FINGERS_OF.get(primitive.kind) != fingers:
+            continue
+        for grasp in segment_grasps(plan, part, segment):
+            if grasp.T_active_tool[2, 2] > -0.999 or abs(1e3 * grasp.opening / SCALE - opening) > 0.2:
+                continue
+            lengths = finger_length_range(grasp, operation)
+            if lengths.free and (least is None or lengths.shortest < least):
+                least = lengths.shortest
+    return None if least is None else round(1e3 * least / SCALE, 3)
 
 
 def figure_5_16(context: Context) -> Result:

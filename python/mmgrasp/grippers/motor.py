@@ -35,7 +35,10 @@ class Composed:
         for (section, _), (low, high) in zip(self.bodies, pairwise(self.heights()), strict=True):
             sides = tuple(unit * s for s in section) if isinstance(section, tuple) else unit * section
             profile += [(sides, unit * low), (sides, unit * high)]  # type: ignore[list-item]
-        return lofted([(unit * self.bore, 0.0), *profile, (unit * self.bore, unit * float(self.heights()[-1]))])
+        # The bore's wall ends where bodies do, so that each of its faces belongs to one of them.
+        ends = self.heights() if self.bore > 0 else self.heights()[[0, -1]]
+        bore: list[tuple[Section, float]] = [(unit * self.bore, unit * float(z)) for z in ends]
+        return lofted([bore[0], *profile, *bore[:0:-1]])
 
     def body_of_faces(self, mesh: Mesh) -> np.ndarray:
         """The body that lies behind each face (m,)."""

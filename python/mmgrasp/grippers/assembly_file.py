@@ -56,14 +56,14 @@ class HoldingChoice:
     """What fingers press with and are made of, for grasps that are to hold weight and insertion."""
 
     force: float = 50.0
-    """Of each finger [N]."""
+    """Each finger presses with this [N]."""
     friction: float = 0.5
     modulus: float = 3e6
     """Plane strain modulus of pad and part together [Pa]."""
     pad_radius: float | None = None
-    """Of hollow pads of centric fingers [m]; None: flat."""
+    """Hollow pads of centric fingers have this radius [m]; None: flat."""
     density: float = 7850.0
-    """Of the parts [kg/m3]."""
+    """All parts have this density [kg/m3]."""
     least_safety: float = 1.0
     """Grasps that hold less than this many times the load are refused."""
 

@@ -43,11 +43,11 @@ class Held:
     safety: float
     """The loads may grow at least by this factor before a pad slips, on the way and at its end."""
     insertion_moment: float
-    """Of the insertion's resistance about the middle between the pads [N m]."""
+    """The insertion's resistance has this moment about the middle between the pads [N m]."""
     pad_torque: float
     """About its normal, that a pad holds beside the forces it carries at the end [N m]."""
     contact_area: float
-    """Of one pad [m2]."""
+    """One pad touches this much [m2]."""
 
 
 @dataclass(frozen=True)

@@ -28,7 +28,7 @@ class Place:
     """Where a part stands at full size [mm]."""
 
     z: float
-    """Of its lower end."""
+    """Height of its lower end."""
     x: float = 0.0
     y: float = 0.0
     upside_down: bool = False
@@ -51,7 +51,7 @@ PLACES = {
     "13": Place(158),
 }
 ORDER = ("1", "2", "3", "4", "5", "6", "7", "8", "9", "11", "12", "10", "13")
-"""By P1's numbers but for part 10, which stands on 12."""
+"""P1's numbers in turn, but for part 10, which stands on 12."""
 
 
 def pose_of(name: str, scale: float) -> NDArray[np.float64]:

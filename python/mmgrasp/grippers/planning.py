@@ -83,7 +83,7 @@ class GripperPlan:
     holdings: list[Held | None] = field(default_factory=list)
     """One per requirement; None where the assembly says nothing of weight and insertion."""
     loads: dict[str, OperationLoad | None] = field(default_factory=dict)
-    """By operation."""
+    """What each operation's grasps have to hold."""
 
     @property
     def outcome(self) -> Outcome:
@@ -252,7 +252,7 @@ def _try_grasps(plan: GripperPlan, fate: SegmentFate, operation: AssemblyOperati
 
 
 def _undominated(found: list[Found]) -> list[Found]:
-    """Of each opening the grasps whose lengths no other one's hold, unless they hold better; the first of equals."""
+    """The grasps of each opening whose lengths no other one's hold, unless they hold better; the first of equals."""
     kept: list[Found] = []
     for f in sorted(found, key=lambda f: (f.opening, f.lengths.shortest, -f.lengths.longest, rank(f.held))):
         if not any(

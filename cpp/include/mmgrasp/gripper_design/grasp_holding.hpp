@@ -14,7 +14,7 @@ struct MMGRASP_EXPORT FingerGrip {
   double force = 50;      ///< Each finger presses with this [N], > 0.
   double friction = 0.5;  ///< Coulomb's coefficient between pad and part, > 0.
   double modulus = 3e6;   ///< Plane strain modulus of pad and part together [Pa], > 0: a rubber pad's by default.
-  double pad_radius = std::numeric_limits<double>::infinity();  ///< Of hollow pads of centric fingers [m], > 0; flat
+  double pad_radius = std::numeric_limits<double>::infinity();  ///< Hollow pads of centric fingers [m], > 0; flat
                                                                 ///< where it is infinite or less than the wall's.
   void check() const;                                           ///< Throws InvalidInput naming field, value and rule.
 };
@@ -23,7 +23,7 @@ struct MMGRASP_EXPORT FingerGrip {
 struct MMGRASP_EXPORT AssemblyLoad {
   Eigen::Vector3d weight = Eigen::Vector3d::Zero();      ///< Force of gravity [N].
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();      ///< Where it acts [m].
-  Eigen::Vector3d resistance = Eigen::Vector3d::Zero();  ///< Of the insertion: against the motion [N].
+  Eigen::Vector3d resistance = Eigen::Vector3d::Zero();  ///< Against the motion of the insertion [N].
   Eigen::Vector3d hole = Eigen::Vector3d::Zero();        ///< A point on the hole's axis, where it acts [m].
   void check() const;                                    ///< Throws InvalidInput: numbers that are none.
 };
@@ -32,7 +32,7 @@ struct MMGRASP_EXPORT AssemblyLoad {
 struct MMGRASP_EXPORT GraspHolding {
   ContactArea contact;          ///< One pad's.
   double pad_torque = 0;        ///< Torque about its normal that a pad holds beside the forces it carries; least [N m].
-  double insertion_moment = 0;  ///< Of the resistance about the middle between the pads: 0 where fingers stand evenly
+  double insertion_moment = 0;  ///< The resistance about the middle between the pads: 0 where fingers stand evenly
                                 ///< about the hole's axis [N m].
   /// The loads may grow at least by this factor before a pad slips; infinite where there are none. Above 1: held.
   double safety = 0;

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .._core import Gripper, GripperActuator, SegmentRequirement, minimal_grippers
+from .._core import GripperActuator, SegmentRequirement, minimal_grippers
 from .drawing import figure
 from .entry import Context, Entry, Result
 
@@ -162,20 +162,21 @@ def random_assembly(parts: int, seed: int) -> list[SegmentRequirement]:
 
 
 TRIES = 100_000  # grippers put into sets, one after the other
+LONG_FINGER = 0.1  # [m]
 
 
 def takers(required: list[SegmentRequirement], strokes: dict[int, float]) -> list[int]:
     """What each gripper takes that ends at a segment and has long fingers, a bit a part; none that takes only what another does."""
-    parts = list(dict.fromkeys(r.part for r in required))
+    number = {part: i for i, part in enumerate(dict.fromkeys(r.part for r in required))}
+    segments = [(r.fingers, r.opening, r.min_finger_length, 1 << number[r.part]) for r in required]
     masks = set()
-    for end in required:
-        low = max(0.0, end.opening - strokes[end.fingers])
-        gripper = Gripper(
-            fingers=end.fingers, min_opening=low, max_opening=low + strokes[end.fingers], finger_length=0.1
-        )
-        masks.add(
-            sum(1 << i for i, part in enumerate(parts) if any(gripper.holds(r) for r in required if r.part == part))
-        )
+    for fingers, end, _, _ in segments:
+        low = max(0.0, end - strokes[fingers])
+        mask = 0
+        for f, opening, least, part in segments:
+            if f == fingers and low - 1e-9 <= opening <= low + strokes[f] + 1e-9 and least <= LONG_FINGER:
+                mask |= part
+        masks.add(mask)
     return sorted(m for m in masks if not any(m != other and m & other == m for other in masks))
 
 

@@ -119,7 +119,7 @@ def _held(held: Held | None) -> list[str]:
     if held is None:
         return []
     numbers = (held.safety, held.insertion_moment, held.pad_torque, 1e6 * held.contact_area)
-    return [f"{number:.3g}" for number in numbers]
+    return [f"{round(number, 6):.3g}" for number in numbers]
 
 
 def _segments(plan: GripperPlan, pictures: Path | None) -> str:

@@ -62,20 +62,24 @@ void bind_assembly_grasp(py::module_& m) {
       "    AssemblyGrasp(T_active_tool, fingers=3, opening=0.04)")
       .def(py::init([](const ArrayLike& T_active_tool, const Given<int>& fingers, const Given<double>& opening,
                        const Given<double>& width, const Given<double>& thickness, const Given<double>& clearance,
-                       const Given<double>& palm_radius) {
+                       const Given<double>& palm_radius, const Given<double>& contact_length,
+                       const Given<double>& contact_width) {
              const G grasp{pose_argument(T_active_tool, "T_active_tool"),
                            taken(fingers, "fingers"),
                            taken(opening, "opening"),
                            taken(width, "width"),
                            taken(thickness, "thickness"),
                            taken(clearance, "clearance"),
-                           taken(palm_radius, "palm_radius")};
+                           taken(palm_radius, "palm_radius"),
+                           taken(contact_length, "contact_length"),
+                           taken(contact_width, "contact_width")};
              grasp.check();
              return grasp;
            }),
            "T_active_tool"_a, py::kw_only(), "fingers"_a = G{}.fingers, "opening"_a = G{}.opening,
            "width"_a = G{}.width, "thickness"_a = G{}.thickness, "clearance"_a = G{}.clearance,
-           "palm_radius"_a = G{}.palm_radius, "Tool frame (4, 4), 2 or 3 fingers, lengths [m].")
+           "palm_radius"_a = G{}.palm_radius, "contact_length"_a = G{}.contact_length,
+           "contact_width"_a = G{}.contact_width, "Tool frame (4, 4), 2 or 3 fingers, lengths [m].")
       .def_property_readonly(
           "T_active_tool", [](const G& g) { return g.T_active_tool.matrix(); }, "(4, 4)")
       .def_readonly("fingers", &G::fingers, "2: parallel jaws; 3: centric fingers.")
@@ -84,6 +88,9 @@ void bind_assembly_grasp(py::module_& m) {
       .def_readonly("thickness", &G::thickness, "Thickness of a finger, along the closing direction [m].")
       .def_readonly("clearance", &G::clearance, "How far each finger opens to approach and to let go [m].")
       .def_readonly("palm_radius", &G::palm_radius, "Radius of the palm and of all behind it [m].")
+      .def_readonly("contact_length", &G::contact_length,
+                    "How far a pad overlaps what it holds, along the approach from the tips [m]; 0: not known.")
+      .def_readonly("contact_width", &G::contact_width, "The same across the approach [m].")
       .def("__repr__", [](const G& g) {
         return "AssemblyGrasp(" + std::to_string(g.fingers) + " fingers, opening " +
                std::string(py::repr(py::float_(g.opening))) + ")";

@@ -3,6 +3,7 @@
 #include <tuple>
 #include <utility>
 
+#include "arrays.hpp"
 #include "bindings.hpp"
 #include "given.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
@@ -253,6 +254,25 @@ void bind_gripper_design(py::module_& m) {
        "segment (P1 5.3.4, (5.1) and (5.2) with <=). Parts are assembled in the order in which the requirements first "
        "name them; of all cheapest sets one with the fewest changes of the gripper is taken. Proven over all grippers; "
        "with `grid=(n, m)` only over P1's n openings and m finger lengths." +
+       option_help(minimal_grippers_fields()))
+          .c_str());
+  m.def(
+      "preferred_grippers",
+      [](const Given<std::vector<SegmentRequirement>>& requirements, const ArrayLike& values,
+         const Given<std::vector<GripperActuator>>& actuators, const Progress& progress, const py::kwargs& keywords) {
+        const MinimalGrippersOptions options = read_options(minimal_grippers_fields(), keywords, "preferred_grippers");
+        const auto asked = taken(requirements, "requirements", "SegmentRequirement");
+        const auto drives = taken(actuators, "actuators", "GripperActuator");
+        const Eigen::VectorXd given = vector_argument(values, "values", static_cast<Eigen::Index>(asked.size()));
+        const std::vector<double> worth(given.begin(), given.end());
+        return LongCall(progress).run(
+            [&](const Monitor& monitor) { return preferred_grippers(asked, worth, drives, options, monitor); });
+      },
+      "requirements"_a, "values"_a, "actuators"_a, py::kw_only(), "progress"_a = py::none(),
+      ("A set of no higher cost and no more changes than minimal_grippers' that takes each part by its best segment, "
+       "as "
+       "far as one does: parts in the order of assembly, of each the requirements by `values` (one per requirement), "
+       "highest first." +
        option_help(minimal_grippers_fields()))
           .c_str());
 }

@@ -23,6 +23,7 @@ void bind_beam_frame(py::module_& m);
 void bind_object_path(py::module_& m);
 void bind_assembly(py::module_& m);
 void bind_gripper_design(py::module_& m);
+void bind_grasp_holding(py::module_& m);
 void bind_push_grasp(py::module_& m);
 void bind_manipulation(py::module_& m);
 
@@ -100,6 +101,7 @@ PYBIND11_MODULE(_core, m) {
   bind_object_path(m);
   bind_assembly(m);
   bind_gripper_design(m);
+  bind_grasp_holding(m);
   bind_verify(m);
   refuse_bare_objects(m);
   end_calls_at_exit();

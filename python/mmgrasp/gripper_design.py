@@ -15,4 +15,12 @@ from ._core import (
     Gripper as Gripper,
     minimal_grippers as minimal_grippers,
     MinimalGrippersResult as MinimalGrippersResult,
+    preferred_grippers as preferred_grippers,
+    ContactArea as ContactArea,
+    flat_contact as flat_contact,
+    line_contact as line_contact,
+    soft_finger_torque as soft_finger_torque,
+    FingerGrip as FingerGrip,
+    GraspHolding as GraspHolding,
+    grasp_holding as grasp_holding,
 )

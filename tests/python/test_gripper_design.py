@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import functools
+import itertools
+import operator
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +12,7 @@ import pytest
 
 import mmgrasp as mg
 from mmgrasp.gripper_design import Gripper, GripperActuator, SegmentRequirement, minimal_grippers
-from mmgrasp.reproduce.gripper_sets import ACTUATORS, requirements
+from mmgrasp.reproduce.gripper_sets import ACTUATORS, every_set, requirements
 
 JAWS = GripperActuator("jaws", 0.01)
 
@@ -97,3 +100,19 @@ def test_a_gripper_is_a_hand_to_planners(tmp_path: Path) -> None:
     assert mg.grasping.sample_grasps([mg.LinkShape(mg.Box([0.03, 0.05, 0.04]))], hand)
     with pytest.raises(mg.InvalidInput, match="fingers = 3"):
         Gripper(fingers=3).hand()
+
+
+def test_trying_all_sets_is_what_it_says() -> None:
+    """Against all combinations, and it does not go on for ever."""
+    rng = np.random.default_rng(1)
+    for _ in range(200):
+        parts = int(rng.integers(1, 8))
+        masks = [int(m) for m in rng.integers(1, 1 << parts, rng.integers(1, 9))]
+        sizes = [
+            size
+            for size in range(1, len(masks) + 1)
+            for chosen in itertools.combinations(masks, size)
+            if functools.reduce(operator.or_, chosen) == (1 << parts) - 1
+        ]
+        assert every_set(masks, parts, len(masks)) == min(sizes, default=len(masks) + 1)
+    assert every_set([1 << i for i in range(12)] * 3, 12, 11, tries=1000) is None

@@ -8,8 +8,9 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from mmgrasp._core import fit_primitives, segment_mesh
 from mmgrasp.grippers.motor import PARTS, ROTOR, SLEEVE, Composed
-from mmgrasp.grippers.turned_parts import SIDES, lofted
+from mmgrasp.grippers.turned_parts import SIDES, lofted, turned
 from mmgrasp.reproduce.gripper_sets import SEGMENTS
 from mmgrasp.reproduce.segmentation import opening_found, taken_apart
 
@@ -81,3 +82,16 @@ def test_round_walls_are_for_three_fingers_and_flat_sides_for_two() -> None:
     assert opening_found(60, 3, seen["offered"]) != pytest.approx(60, abs=0.1)
     assert opening_found(40, 2, seen["offered"]) != pytest.approx(40, abs=0.1)
     assert opening_found(40, 3, [{"kind": "box", "widths": [40.0]}]) is None
+
+
+@pytest.mark.parametrize(("low", "high"), [((16, 38), (20, 14)), ((16, 38), (20, 24)), ((25, 12), (17, 30))])
+def test_a_cylinder_is_as_long_as_its_wall_though_its_bore_runs_on(low: tuple[int, int], high: tuple[int, int]) -> None:
+    """Radius and height of two bodies [mm]: the bore's faces run through both and belong to one of the segments; fingers hold outer walls only."""
+    end = low[1] + high[1]
+    profile = [(10, 0), (low[0], 0), (low[0], low[1]), (high[0], low[1]), (high[0], end), (10, end)]
+    mesh = turned(1e-3 * np.array(profile))
+    found = {round(1e3 * fit.size[0]): fit for fit in fit_primitives(mesh, segment_mesh(mesh).labels)}
+    for radius, height, middle in ((*low, low[1] / 2), (*high, low[1] + high[1] / 2)):
+        fit = found[2 * radius]
+        assert 1e3 * fit.size[2] == pytest.approx(height, abs=0.1)
+        assert 1e3 * fit.T_mesh_primitive[2, 3] == pytest.approx(middle, abs=0.1)

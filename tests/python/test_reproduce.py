@@ -27,6 +27,9 @@ from mmgrasp.reproduce.statements import ANSWERS
 pytestmark = pytest.mark.slow
 
 SIDE = {"type": ["number", "string", "boolean", "null", "array"]}
+# What a paper claims and its own table denies (docs/errata.md): must come out reversed, and nothing else may.
+REVERSED_BY_ARITHMETIC = {"p1-figure-5.14": ["four grippers take all 13 parts: 10 of 13"]}
+
 SCHEMA = {
     "type": "object",
     "required": ["name", "rows", "setup", "checks", "quick", "seed", "machine", "date"],
@@ -109,7 +112,7 @@ def test_other_seeds_stand_beside_the_first(quick: Callable[[str], dict[str, Any
 @pytest.mark.parametrize("name", ENTRIES)
 def test_exact_values_and_trends_hold(name: str, quick: Callable[[str], dict[str, Any]]) -> None:
     late = [c["what"] for c in quick(name)["checks"] if not c["holds"] and not c["clock"]]
-    assert late == []
+    assert late == REVERSED_BY_ARITHMETIC.get(name, [])
 
 
 def test_sequence_sizes_are_the_papers(quick: Callable[[str], dict[str, Any]]) -> None:

@@ -10,7 +10,7 @@ import numpy.typing
 import os
 import typing
 from . import verify
-__all__: list[str] = ['AssemblyGrasp', 'AssemblyOperation', 'BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'BeamExtreme', 'BeamFrame', 'BeamMaterial', 'BeamMember', 'BeamSection', 'BeamState', 'BeamSupport', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactPairProvenance', 'ContactPatch', 'CuboidFit', 'Cylinder', 'DepthCamera', 'DepthImage', 'DepthNoise', 'DerivativeFreeResult', 'DistanceField', 'DistanceResult', 'DrawnSuccess', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'Facet', 'FeasibleGrasp', 'FingerLengthRange', 'FittedCuboid', 'FittedPrimitive', 'Grasp', 'GraspOptimum', 'GraspRating', 'GraspReport', 'GraspSuccess', 'GraspSynthesis', 'GraspWidth', 'Graspability', 'GridDistanceField', 'Gripper', 'GripperActuator', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'IntegrationReport', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LineGrasp', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'ManipulationStats', 'Mesh', 'MeshDistanceField', 'MeshSegment', 'MeshSegmentation', 'MinimalGrippersResult', 'MotionResult', 'MotionStats', 'NodeLoad', 'ObjectPathEvaluator', 'ObjectPathProblem', 'ObjectPathResult', 'ObjectRegions', 'ObjectSegmentation', 'Obstruction', 'OccupancyMap', 'OccupancyReport', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'PairwiseWeights', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedMesh', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'ProbabilisticSdf', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotMotion', 'RobotSource', 'ScrewThread', 'SdfHits', 'SearchTree', 'SegmentRequirement', 'SegmentedObject', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'SupportedFrame', 'SupportingPlane', 'ToolRegion', 'TourResult', 'Tray', 'Voxels', 'WholeBodyTrajectory', 'World', 'beam_frame', 'cache_folder', 'camera_view_objective', 'centric_grasps', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'copper', 'cover_from_intersections', 'default_grasp_search', 'derivative_free_solver_names', 'drive_arc', 'eigengrasp_hand', 'evaluate_graspability', 'find_package', 'finger_length_range', 'fit_cuboids', 'fit_primitives', 'follow_object_path', 'grasp_search_names', 'graspability_map', 'hand_masks', 'inscribed_circle', 'jaw_grasps', 'joint_limit_objective', 'joint_velocity', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimal_grippers', 'minimize_derivative_free', 'nlp_solver_names', 'optimised_order', 'optimize_grasp', 'paired_order', 'pairwise_weights', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stop_picks', 'plan_stops_exact', 'plan_straight_line', 'planar_facets', 'planner_names', 'platform_velocity', 'population_search_names', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'rectangular_section', 'render_depth', 'resting_poses', 'robust_intersections', 'round_section', 'route_lengths', 'run_policy', 'sample_grasps', 'segment_depth_image', 'segment_mesh', 'segment_objects', 'self_distance_objective', 'shape_diameters', 'share_headings', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_set_cover', 'synthesize_grasps', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
+__all__: list[str] = ['AssemblyGrasp', 'AssemblyOperation', 'BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'BeamExtreme', 'BeamFrame', 'BeamMaterial', 'BeamMember', 'BeamSection', 'BeamState', 'BeamSupport', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactArea', 'ContactPairProvenance', 'ContactPatch', 'CuboidFit', 'Cylinder', 'DepthCamera', 'DepthImage', 'DepthNoise', 'DerivativeFreeResult', 'DistanceField', 'DistanceResult', 'DrawnSuccess', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'Facet', 'FeasibleGrasp', 'FingerGrip', 'FingerLengthRange', 'FittedCuboid', 'FittedPrimitive', 'Grasp', 'GraspHolding', 'GraspOptimum', 'GraspRating', 'GraspReport', 'GraspSuccess', 'GraspSynthesis', 'GraspWidth', 'Graspability', 'GridDistanceField', 'Gripper', 'GripperActuator', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'IntegrationReport', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LineGrasp', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'ManipulationStats', 'Mesh', 'MeshDistanceField', 'MeshSegment', 'MeshSegmentation', 'MinimalGrippersResult', 'MotionResult', 'MotionStats', 'NodeLoad', 'ObjectPathEvaluator', 'ObjectPathProblem', 'ObjectPathResult', 'ObjectRegions', 'ObjectSegmentation', 'Obstruction', 'OccupancyMap', 'OccupancyReport', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'PairwiseWeights', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedMesh', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'ProbabilisticSdf', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotMotion', 'RobotSource', 'ScrewThread', 'SdfHits', 'SearchTree', 'SegmentRequirement', 'SegmentedObject', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'SupportedFrame', 'SupportingPlane', 'ToolRegion', 'TourResult', 'Tray', 'Voxels', 'WholeBodyTrajectory', 'World', 'beam_frame', 'cache_folder', 'camera_view_objective', 'centric_grasps', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'copper', 'cover_from_intersections', 'default_grasp_search', 'derivative_free_solver_names', 'drive_arc', 'eigengrasp_hand', 'evaluate_graspability', 'find_package', 'finger_length_range', 'fit_cuboids', 'fit_primitives', 'flat_contact', 'follow_object_path', 'grasp_holding', 'grasp_search_names', 'graspability_map', 'hand_masks', 'inscribed_circle', 'jaw_grasps', 'joint_limit_objective', 'joint_velocity', 'line_contact', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimal_grippers', 'minimize_derivative_free', 'nlp_solver_names', 'optimised_order', 'optimize_grasp', 'paired_order', 'pairwise_weights', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stop_picks', 'plan_stops_exact', 'plan_straight_line', 'planar_facets', 'planner_names', 'platform_velocity', 'population_search_names', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'preferred_grippers', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'rectangular_section', 'render_depth', 'resting_poses', 'robust_intersections', 'round_section', 'route_lengths', 'run_policy', 'sample_grasps', 'segment_depth_image', 'segment_mesh', 'segment_objects', 'self_distance_objective', 'shape_diameters', 'share_headings', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'soft_finger_torque', 'solve_set_cover', 'synthesize_grasps', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
 class Error(Exception):
     """
     Base of all errors of mmgrasp.
@@ -5754,7 +5754,7 @@ class AssemblyGrasp:
     
         AssemblyGrasp(T_active_tool, fingers=3, opening=0.04)
     """
-    def __init__(self, T_active_tool: numpy.typing.ArrayLike, *, fingers: int = 2, opening: float = 0.02, width: float = 0.015, thickness: float = 0.008, clearance: float = 0.002, palm_radius: float = 0.03) -> None:
+    def __init__(self, T_active_tool: numpy.typing.ArrayLike, *, fingers: int = 2, opening: float = 0.02, width: float = 0.015, thickness: float = 0.008, clearance: float = 0.002, palm_radius: float = 0.03, contact_length: float = 0.0, contact_width: float = 0.0) -> None:
         """
         Tool frame (4, 4), 2 or 3 fingers, lengths [m].
         """
@@ -5769,6 +5769,16 @@ class AssemblyGrasp:
     def clearance(self) -> float:
         """
         How far each finger opens to approach and to let go [m].
+        """
+    @property
+    def contact_length(self) -> float:
+        """
+        By which a pad overlaps what it holds, along the approach from the tips [m]; 0: not known.
+        """
+    @property
+    def contact_width(self) -> float:
+        """
+        The same across the approach [m].
         """
     @property
     def fingers(self) -> int:
@@ -6098,6 +6108,90 @@ class MinimalGrippersResult:
         """
         Parts that no gripper takes.
         """
+class ContactArea:
+    """
+    Where a soft pad touches: a rectangle along and across the approach.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def area(self) -> float:
+        """
+        [m2]
+        """
+    @property
+    def length(self) -> float:
+        """
+        Along the approach [m].
+        """
+    @property
+    def torsion_radius(self) -> float:
+        """
+        Mean distance from the middle, weighted by pressure: the largest torque about the normal is friction times normal force times this [m].
+        """
+    @property
+    def width(self) -> float:
+        """
+        Across it [m].
+        """
+class FingerGrip:
+    """
+    How fingers press and what their pads are made of.
+    
+        FingerGrip(force=40, friction=0.6, modulus=3e6)
+    """
+    def __init__(self, *, force: float = 50.0, friction: float = 0.5, modulus: float = 3000000.0, pad_radius: float | None = None) -> None:
+        """
+        Force of each finger [N], Coulomb's coefficient, plane strain modulus of pad and part together [Pa], radius of hollow pads [m] (None: flat).
+        """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def force(self) -> float:
+        """
+        Of each finger [N].
+        """
+    @property
+    def friction(self) -> float:
+        """
+        Coulomb's coefficient between pad and part.
+        """
+    @property
+    def modulus(self) -> float:
+        """
+        Plane strain modulus of pad and part together [Pa].
+        """
+    @property
+    def pad_radius(self) -> float | None:
+        """
+        Of hollow pads [m]; None: flat.
+        """
+class GraspHolding:
+    """
+    What a grasp does about the loads of its operation.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def contact(self) -> ContactArea:
+        """
+        One pad's.
+        """
+    @property
+    def insertion_moment(self) -> float:
+        """
+        Of the insertion's resistance about the middle between the pads [N m]; 0: fingers stand evenly about the hole's axis.
+        """
+    @property
+    def pad_torque(self) -> float:
+        """
+        Torque about its normal that a pad holds beside the forces it carries; least of all pads [N m].
+        """
+    @property
+    def safety(self) -> float:
+        """
+        The loads may grow at least by this factor before a pad slips; infinite without loads.
+        """
 def _allowed_bodies(robot: Robot, world: World) -> list[tuple[str, str]]:
     ...
 def _assembly_grasp_option_table() -> dict[str, typing.Any]:
@@ -6325,6 +6419,10 @@ def fit_primitives(mesh: Mesh, labels: numpy.typing.ArrayLike, *, progress: coll
     MeshSegmentation.labels. Inner walls are never offered for grasping, nor are sides of a box with nothing on them. Raises
     InvalidInput when there is not one label >= 0 a face.
     """
+def flat_contact(length: float, width: float) -> ContactArea:
+    """
+    A flat pad on a flat face, pressed evenly; both sides are positive [m].
+    """
 def follow_object_path(problem: ObjectPathProblem, grasp: Grasp, *, motion_weight: float = 0.587, deflection_weight: float = 0.089, manipulability_weight: float = 0.324, motion_scale: float = 1.0, deflection_scale: float = 0.001, manipulability_scale: float = 1.0, max_joint_step: float = 0.5, position_tolerance: float = 0.01, rotation_tolerance: float = 0.05, edge_step: float = 0.02, check_edges: bool = True, single_configuration: bool = False, all_turns: bool = True, redundant_values: int = 0, base_spacing: float = 0.2, base_headings: int = 4, gravity: float = 9.81, max_sag: float = 0.0) -> ObjectPathResult:
     """
     The cheapest motion of the arm that carries the object through all poses with one grasp, over all arm
@@ -6349,6 +6447,10 @@ def follow_object_path(problem: ObjectPathProblem, grasp: Grasp, *, motion_weigh
         base_headings: int = 4  # headings of the base at each place, evenly over a turn
         gravity: float = 9.81  # along the world's -z [m/s2]
         max_sag: float = 0.0  # largest displacement allowed at any pose [m]; 0: any
+    """
+def grasp_holding(grasp: AssemblyGrasp, grip: FingerGrip, *, weight: numpy.typing.ArrayLike | None = None, centre: numpy.typing.ArrayLike | None = None, resistance: numpy.typing.ArrayLike | None = None, hole: numpy.typing.ArrayLike | None = None) -> GraspHolding:
+    """
+    Whether soft fingers hold a part against its weight, and against weight and insertion (P1 5.3.5). `weight` [N] acts at `centre` [m], `resistance` of the insertion [N], against the motion, at `hole` [m], a point on the hole's axis; (3,), in the frame of the grasp's pose, None: zero. The grasp must know its contact_length and contact_width. Loads are shared so that the sum of squares is least, which bounds what can be held from below; pads slip by the limit surface of soft_finger_torque.
     """
 def grasp_search_names() -> list[str]:
     """
@@ -6415,6 +6517,10 @@ def joint_limit_objective(group: JointGroup, soft_fraction: float = 0.1, weight:
 def joint_velocity(theta: float, platform_velocity: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
     """
     Velocities of the virtual joints x, y, theta for a platform velocity: the inverse of platform_velocity().
+    """
+def line_contact(force: float, wall_radius: float, length: float, *, pad_width: float, modulus: float, pad_radius: float | None = None) -> ContactArea:
+    """
+    A pad on a round wall along its axis: Hertz' line contact (Johnson 1985, 4.2), no wider than the pad. Force [N], lengths [m], the modulus of both surfaces together [Pa]; `pad_radius`: of a hollow pad, None: a flat one.
     """
 def look_down(eye: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
     """
@@ -6728,6 +6834,21 @@ def pose_to_xyz_rpy(T: numpy.typing.ArrayLike) -> tuple[numpy.typing.NDArray[num
     """
     Position (3,) and roll-pitch-yaw (3,) of a (4, 4) pose.
     """
+def preferred_grippers(requirements: collections.abc.Sequence[SegmentRequirement], values: numpy.typing.ArrayLike, actuators: collections.abc.Sequence[GripperActuator], *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, shortest_finger: float = 0.01, longest_finger: float = 0.5, opening_margin: float = 0.0, length_margin: float = 0.0, finger_width: float = 0.015, finger_thickness: float = 0.008, change_cost: float = 0.0, max_nodes: int = 20000, time_limit: float = 60.0) -> MinimalGrippersResult:
+    """
+    A set of no higher cost and no more changes than minimal_grippers' that takes each part by its best segment, as far as one does: parts in the order of assembly, of each the requirements by `values` (one per requirement), highest first.
+    
+    Keyword options:
+        shortest_finger: float = 0.01  # no finger is shorter [m]
+        longest_finger: float = 0.5  # no finger is longer [m]
+        opening_margin: float = 0.0  # stroke kept free beyond the part at either end [m]
+        length_margin: float = 0.0  # kept from either limit of the finger length [m]
+        finger_width: float = 0.015  # of the grippers returned [m]
+        finger_thickness: float = 0.008  # of the grippers returned [m]
+        change_cost: float = 0.0  # of changing the gripper between two parts
+        max_nodes: int = 20000  # of the search for fewest changes
+        time_limit: float = 60.0  # wall-clock cap [s]
+    """
 def push_grasp(*, hand: Hand | None = None, opening: float = 0.1, closing_speed: float = 0.1, tool_speed: float = 0.3, finger_length: float = 0.12, object_width: float = 0.05, grip_depth: float = 0.02, planned_depth: float = 0.06, clearance: float = 0.0, max_push: float = 0.1, along_error: float = 0.0, lateral_error: float = 0.0) -> PushGrasp:
     """
     When a hand that moves on may begin to close, and what error of the object's position it forgives (P1 4.3).
@@ -6941,6 +7062,10 @@ def simplify_mesh(mesh: Mesh, tolerance: float = 0.0) -> mmgrasp.records.MeshSta
 def singularity_objective(group: JointGroup, threshold: float, weight: float = 1.0) -> IkObjective:
     """
     Weight times max(0, 1 - M / threshold)^2, M the manipulability of the arm's joints (without the base).
+    """
+def soft_finger_torque(normal: float, friction: float, torsion_radius: float, tangential: float = 0.0) -> float:
+    """
+    The torque about its normal that a soft contact holds beside a tangential force [N m], by the ellipsoid that stands for the limit surface (Howe and Cutkosky 1996). Forces [N], torsion_radius [m].
     """
 def solve_set_cover(elements: int, sets: collections.abc.Sequence[collections.abc.Sequence[int]], costs: collections.abc.Sequence[float] = [], *, time_limit: float = 60.0, progress: collections.abc.Callable[[str, float], typing.Any] | None = None) -> SetCoverResult:
     """

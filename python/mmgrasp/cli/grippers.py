@@ -38,6 +38,7 @@ def run_grippers(arguments: argparse.Namespace, console: Console) -> int:
 
 def _print(plan: GripperPlan, console: Console) -> None:
     from ..viz.gripper_report import proof
+    from ..viz.report import plural
 
     result = plan.result
     if not plan.solved or result is None:
@@ -47,7 +48,8 @@ def _print(plan: GripperPlan, console: Console) -> None:
         for fault in faults:
             console.print(f"- {fault}", markup=False, soft_wrap=True)
         return
-    console.print(f"{len(result.grippers)} grippers for {len(result.parts)} operations: {proof(plan)}", markup=False)
+    what = f"{plural(len(result.grippers), 'gripper')} for {plural(len(result.parts), 'operation')}"
+    console.print(f"{what}: {proof(plan)}", markup=False)
     for i, gripper in enumerate(result.grippers):
         takes = [part for part, which in zip(result.parts, result.gripper_of_part, strict=True) if which == i]
         console.print(

@@ -45,6 +45,27 @@ class AssemblyStep:
     passive: list[str]
     path: list[Pose]
     """Poses of the active parts, from before the operation to their places: T_assembly_active where each place is the identity."""
+    insertion_force: float = 0.0
+    """With which the hole resists, against the last straight line of the path [N]."""
+    hole: NDArray[np.float64] | None = None
+    """A point on the hole's axis, in the assembly [m]; None: the centre of mass of the active parts."""
+
+
+@dataclass
+class HoldingChoice:
+    """What fingers press with and are made of, for grasps that are to hold weight and insertion."""
+
+    force: float = 50.0
+    """Each finger presses with this [N]."""
+    friction: float = 0.5
+    modulus: float = 3e6
+    """Plane strain modulus of pad and part together [Pa]."""
+    pad_radius: float | None = None
+    """Hollow pads of centric fingers have this radius [m]; None: flat."""
+    density: float = 7850.0
+    """All parts have this density [kg/m3]."""
+    least_safety: float = 1.0
+    """Grasps that hold less than this many times the load are refused."""
 
 
 @dataclass
@@ -75,6 +96,8 @@ class Assembly:
     options: dict[str, Any] = field(default_factory=dict)
     """Options of minimal_grippers."""
     unit: str = "m"
+    holding: HoldingChoice | None = None
+    """None: weight and insertion are not looked at."""
 
     def __repr__(self) -> str:
         return f"Assembly({self.name!r}, {len(self.parts)} parts, {len(self.steps)} operations)"
@@ -102,7 +125,7 @@ def load_assembly(path: str | os.PathLike[str]) -> Assembly:
         raise InvalidInput(f"{root.document.source}: is no assembly: the key format: mmgrasp-assembly is missing")
     root["format"].choice("mmgrasp-assembly")
     root.read_version(1)
-    root.mapping("format version name unit parts order actuators", "fingers options")
+    root.mapping("format version name unit parts order actuators", "fingers holding options")
     unit = root["unit"].choice(*UNITS)
     scale = UNITS[unit]
     parts: dict[str, AssemblyPart] = {}
@@ -120,6 +143,7 @@ def load_assembly(path: str | os.PathLike[str]) -> Assembly:
         _read_fingers(root, scale),
         _read_options(root),
         unit,
+        _read_holding(root, scale),
     )
 
 
@@ -191,7 +215,7 @@ def _read_order(node: Node, parts: dict[str, AssemblyPart], scale: float) -> lis
     steps: list[AssemblyStep] = []
     placed: list[str] = []
     for element in _filled(node):
-        element.mapping("", "part parts onto from path name")
+        element.mapping("", "part parts onto from path insertion name")
         if ("part" in element) == ("parts" in element):
             element.fail("must have one of part and parts")
         if "part" in element:
@@ -222,9 +246,37 @@ def _read_order(node: Node, parts: dict[str, AssemblyPart], scale: float) -> lis
         name = element["name"].label() if "name" in element else " + ".join(active)
         if name in [step.name for step in steps]:
             element.fail(f"an operation named {name} is there already: give it a name of its own")
-        steps.append(AssemblyStep(name, active, passive, path))
+        force, hole = _read_insertion(element, path, scale)
+        steps.append(AssemblyStep(name, active, passive, path, force, hole))
         placed += active
     return steps
+
+
+def _read_insertion(operation: Node, path: list[Pose], scale: float) -> tuple[float, NDArray[np.float64] | None]:
+    """Force of the hole's resistance [N] and a point on its axis."""
+    if "insertion" not in operation:
+        return 0.0, None
+    node = operation["insertion"].mapping("force", "hole")
+    if len(path) < 2 or np.linalg.norm(path[-1][:3, 3] - path[-2][:3, 3]) < SMALLEST_PART * 1e-3:
+        node.fail("needs a way that ends with a straight line: give from or path")
+    hole = np.array(node["hole"].numbers(3)) * scale if "hole" in node else None
+    return node["force"].number(least=0), hole
+
+
+def _read_holding(root: Node, scale: float) -> HoldingChoice | None:
+    if "holding" not in root:
+        inserted = any("insertion" in operation for operation in root["order"].elements())
+        return HoldingChoice() if inserted else None
+    choice = HoldingChoice()
+    node = root["holding"].mapping("", "force friction modulus pad_radius density least_safety")
+    for key, value in node.items():
+        if key == "least_safety":
+            choice.least_safety = value.number(least=0)
+        elif key == "modulus":
+            choice.modulus = 1e6 * value.number(above=0)
+        else:
+            setattr(choice, key, value.number(above=0) * (scale if key == "pad_radius" else 1.0))
+    return choice
 
 
 def _read_actuator(node: Node, scale: float) -> GripperActuator:

@@ -13,7 +13,7 @@ import numpy as np
 from .._core import Mesh
 from .turned_parts import Section, lofted
 
-_NECK = 4.0  # radius of what joins the blades of part 7 [mm]
+_NECK = 4.0  # radius of what joins the blades of part 7, and of the boss on part 10 [mm]
 _BLADES = (16.7, 19.1, 17.2, 15.9, 16.5, 15.8, 16.9, 18.5)  # [mm]
 
 
@@ -28,13 +28,17 @@ class Composed:
         """Where bodies begin and end along z [mm]."""
         return np.cumsum([0.0, *(height for _, height in self.bodies)])
 
-    def mesh(self) -> Mesh:
-        """Its surface, closed [m]."""
+    def mesh(self, scale: float = 1.0) -> Mesh:
+        """Its surface, closed [m]; `scale` 1 is the full size."""
+        unit = 1e-3 * scale
         profile: list[tuple[Section, float]] = []
         for (section, _), (low, high) in zip(self.bodies, pairwise(self.heights()), strict=True):
-            sides = tuple(1e-3 * s for s in section) if isinstance(section, tuple) else 1e-3 * section
-            profile += [(sides, 1e-3 * low), (sides, 1e-3 * high)]  # type: ignore[list-item]
-        return lofted([(1e-3 * self.bore, 0.0), *profile, (1e-3 * self.bore, 1e-3 * float(self.heights()[-1]))])
+            sides = tuple(unit * s for s in section) if isinstance(section, tuple) else unit * section
+            profile += [(sides, unit * low), (sides, unit * high)]  # type: ignore[list-item]
+        # The bore's wall ends where bodies do, so that each of its faces belongs to one of them.
+        ends = self.heights() if self.bore > 0 else self.heights()[[0, -1]]
+        bore: list[tuple[Section, float]] = [(unit * self.bore, unit * float(z)) for z in ends]
+        return lofted([bore[0], *profile, *bore[:0:-1]])
 
     def body_of_faces(self, mesh: Mesh) -> np.ndarray:
         """The body that lies behind each face (m,)."""
@@ -46,19 +50,19 @@ class Composed:
 
 
 PARTS = {
-    "1": Composed(((113.5, 20),), bore=30),
+    "1": Composed(((113.5, 20),), bore=10),
     "2": Composed(((113.5, 14),), bore=60),
-    "3": Composed(((55.0, 22),), bore=12),
+    "3": Composed(((55.0, 22),), bore=12.6),
     "4": Composed(((12.5, 45),)),
-    "5": Composed(((16.0, 22), (20.0, 14)), bore=9),
-    "6": Composed(((9.0, 40),)),
+    "5": Composed(((16.0, 38), (20.0, 14)), bore=12.6),
+    "6": Composed(((9.0, 140),)),
     "7": Composed(tuple(body for width in _BLADES for body in (((width, 34.0), 14), (_NECK, 9)))[:-1]),
-    "8": Composed((((60.0, 90.0), 24), (20.0, 40))),
-    "9": Composed(((16.0, 30), (20.0, 24)), bore=10),
-    "10": Composed((((17.0, 40.0), 26),)),
-    "11": Composed(((10.0, 36),)),
+    "8": Composed((((60.0, 90.0), 24), (20.0, 40)), bore=9.1),
+    "9": Composed(((16.0, 38), (20.0, 24)), bore=10.1),
+    "10": Composed((((17.0, 40.0), 26), (_NECK, 1.5))),
+    "11": Composed(((10.0, 72),)),
     "12": Composed((((32.8, 52.0), 14), ((15.0, 28.0), 30))),
-    "13": Composed(((18.75, 34),)),
+    "13": Composed(((18.75, 27.3),), bore=9.1),
 }
 """Parts by P1's numbers, in the order of assembly."""
 ROTOR = Composed(((8.0, 20), (14.0, 14), ((30.0, 46.0), 20), (14.0, 12), (10.0, 25), (6.0, 16)))

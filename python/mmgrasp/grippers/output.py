@@ -11,6 +11,7 @@ import numpy as np
 from .. import _core
 from .._core import AssemblyGrasp, SegmentRequirement
 from .._files import write_file
+from .holding import Held
 from .planning import GripperPlan
 
 GRIPPER_FOLDERS = "gripper_*"
@@ -50,7 +51,10 @@ def result_to_dict(plan: GripperPlan) -> dict[str, Any]:
             }
             for f in plan.fates
         ],
-        "requirements": [_requirement(r, g) for r, g in zip(plan.requirements, plan.grasps, strict=True)],
+        "requirements": [
+            _requirement(r, g) | ({} if h is None else {"held": _held(h)})
+            for r, g, h in zip(plan.requirements, plan.grasps, plan.holdings, strict=True)
+        ],
     }
     if result is None:
         return out
@@ -82,4 +86,13 @@ def _requirement(requirement: SegmentRequirement, grasp: AssemblyGrasp) -> dict[
         "min_finger_length": requirement.min_finger_length,
         "max_finger_length": requirement.max_finger_length,
         "T_assembly_tips": np.asarray(grasp.T_active_tool).tolist(),
+    }
+
+
+def _held(held: Held) -> dict[str, Any]:
+    return {
+        "safety": held.safety if np.isfinite(held.safety) else None,
+        "insertion_moment": held.insertion_moment,
+        "pad_torque": held.pad_torque,
+        "contact_area": held.contact_area,
     }

@@ -23,9 +23,24 @@ from .._core import (
 )
 from .._progress import Progress
 from .assembly_file import Assembly, AssemblyPart, AssemblyStep
+from .holding import Held, OperationLoad, held_by, load_of, preference, rank
 from .rehearsal import rehearse
 
 PALM_MARGIN = 0.005  # [m]
+FINGERS_OF = {"box": 2, "cylinder": 3}  # P1 5.2.1
+
+
+SLIPS = "pads slip: the grasp does not hold weight and insertion"
+
+
+@dataclass
+class Found:
+    """A grasp that meets nothing."""
+
+    opening: float
+    lengths: FingerLengthRange
+    grasp: AssemblyGrasp
+    held: Held | None
 
 
 @dataclass
@@ -65,6 +80,10 @@ class GripperPlan:
     result: MinimalGrippersResult | None
     rehearsed: dict[str, str] = field(default_factory=dict)
     """For each operation what the chosen gripper met when the operation was gone through again by the collision checker; '' nothing."""
+    holdings: list[Held | None] = field(default_factory=list)
+    """One per requirement; None where the assembly says nothing of weight and insertion."""
+    loads: dict[str, OperationLoad | None] = field(default_factory=dict)
+    """What each operation's grasps have to hold."""
 
     @property
     def outcome(self) -> Outcome:
@@ -104,7 +123,8 @@ def plan_grippers(assembly: Assembly, *, progress: Progress = None) -> GripperPl
     Every part is cut into segments, each is given the primitive that fits best; boxes are for two jaws, cylinders for three centric fingers (5.2.1).
     A segment can be held in an operation when a grasp of it meets neither its own parts nor those that stay, with some finger length; the lengths are
     kept (5.3). Then the least set of grippers is chosen (5.3.4), and every operation is gone through again with the gripper
-    itself, by the collision checker.
+    itself, by the collision checker. With `assembly.holding` grasps that slip are refused, and of several segments that no
+    more grippers could take the one is taken that bears the insertion most evenly, then most safely.
     """
     segmentations: dict[str, MeshSegmentation] = {}
     primitives: dict[str, list[FittedPrimitive]] = {}
@@ -123,18 +143,21 @@ def plan_grippers(assembly: Assembly, *, progress: Progress = None) -> GripperPl
     if plan.missing:
         return plan
     fingers = assembly.fingers
-    plan.result = _core.minimal_grippers(
-        plan.requirements,
-        assembly.actuators,
-        shortest_finger=fingers.shortest,
-        longest_finger=fingers.longest,
-        opening_margin=fingers.opening_margin,
-        length_margin=fingers.length_margin,
-        finger_width=fingers.width,
-        finger_thickness=fingers.thickness,
-        progress=progress,
+    options = {
+        "shortest_finger": fingers.shortest,
+        "longest_finger": fingers.longest,
+        "opening_margin": fingers.opening_margin,
+        "length_margin": fingers.length_margin,
+        "finger_width": fingers.width,
+        "finger_thickness": fingers.thickness,
+        "progress": progress,
         **assembly.options,
-    )
+    }
+    if assembly.holding is None:
+        plan.result = _core.minimal_grippers(plan.requirements, assembly.actuators, **options)
+    else:
+        values = preference(plan.requirements, plan.holdings)
+        plan.result = _core.preferred_grippers(plan.requirements, values, assembly.actuators, **options)
     if plan.result.grippers:
         for i, step in enumerate(assembly.steps):
             if progress is not None:
@@ -147,6 +170,7 @@ def plan_grippers(assembly: Assembly, *, progress: Progress = None) -> GripperPl
 
 def _add_requirements(plan: GripperPlan, step: AssemblyStep) -> None:
     operation = operation_of(plan.assembly, step)
+    plan.loads[step.name] = load_of(plan.assembly, step)
     before = len(plan.requirements)
     for name in step.active:
         part = plan.assembly.parts[name]
@@ -162,7 +186,7 @@ def _judge(
     plan: GripperPlan, step: AssemblyStep, operation: AssemblyOperation, part: AssemblyPart, segment: int
 ) -> SegmentFate:
     primitive = plan.primitives[part.name][segment]
-    fingers = {"box": 2, "cylinder": 3}.get(primitive.kind, 0)
+    fingers = FINGERS_OF.get(primitive.kind, 0)
     fate = SegmentFate(step.name, part.name, segment, primitive.kind, fingers)
     if segment in part.keep_off:
         fate.refused = "not to be touched"
@@ -175,16 +199,15 @@ def _judge(
     elif fingers not in {a.fingers for a in plan.assembly.actuators}:
         fate.refused = f"no actuator has {fingers} fingers"
     else:
-        _try_grasps(plan, fate, operation, part, primitive)
+        _try_grasps(plan, fate, operation, part)
     return fate
 
 
-def _try_grasps(
-    plan: GripperPlan, fate: SegmentFate, operation: AssemblyOperation, part: AssemblyPart, primitive: FittedPrimitive
-) -> None:
-    found: list[tuple[float, FingerLengthRange, AssemblyGrasp]] = []
+def _try_grasps(plan: GripperPlan, fate: SegmentFate, operation: AssemblyOperation, part: AssemblyPart) -> None:
+    found: list[Found] = []
     causes: collections.Counter[str] = collections.Counter()
-    for grasp in _candidates(plan, fate, part, primitive):
+    least_safety = 0.0 if plan.assembly.holding is None else plan.assembly.holding.least_safety
+    for grasp in segment_grasps(plan, part.name, fate.segment):
         fate.tried += 1
         lengths = _core.finger_length_range(grasp, operation)
         fingers = plan.assembly.fingers
@@ -199,48 +222,55 @@ def _try_grasps(
                 f"{1e3 * getattr(fingers, limit):.4g} mm"
             ] += 1
         else:
-            fate.free += 1
-            found.append((round(grasp.opening, 6), lengths, grasp))
+            held = held_by(grasp, plan.loads[fate.step])
+            if held is not None and held.safety < least_safety:
+                causes[SLIPS] += 1
+            else:
+                fate.free += 1
+                found.append(Found(round(grasp.opening, 6), lengths, grasp, held))
     if not fate.tried:
         fate.refused = "no pair of opposite faces" if fate.fingers == 2 else "wider than any actuator opens"
     elif not found:
         cause, count = causes.most_common(1)[0]
         fate.refused = f"{cause} ({count} of {fate.tried} grasps)"
-    for opening, lengths, grasp in _undominated(found):
+    for chosen in _undominated(found):
+        lengths = chosen.lengths
         fate.requirements.append(len(plan.requirements))
         upper = lengths.longest if np.isfinite(lengths.longest) else None
+        plan.holdings.append(chosen.held)
         plan.requirements.append(
             SegmentRequirement(
                 fate.step,
-                opening,
+                chosen.opening,
                 segment=f"{fate.part}, segment {fate.segment}",
                 fingers=fate.fingers,
                 min_finger_length=lengths.shortest,
                 max_finger_length=upper,
             )
         )
-        plan.grasps.append(grasp)
+        plan.grasps.append(chosen.grasp)
 
 
-def _undominated(
-    found: list[tuple[float, FingerLengthRange, AssemblyGrasp]],
-) -> list[tuple[float, FingerLengthRange, AssemblyGrasp]]:
-    """For each opening the grasps whose lengths no other one's hold; the first of equals."""
-    kept: list[tuple[float, FingerLengthRange, AssemblyGrasp]] = []
-    for opening, lengths, grasp in sorted(found, key=lambda f: (f[0], f[1].shortest, -f[1].longest)):
+def _undominated(found: list[Found]) -> list[Found]:
+    """For each opening the grasps whose lengths no other one's hold, unless they hold better; the first of equals."""
+    kept: list[Found] = []
+    for f in sorted(found, key=lambda f: (f.opening, f.lengths.shortest, -f.lengths.longest, rank(f.held))):
         if not any(
-            o == opening and k.shortest <= lengths.shortest and k.longest >= lengths.longest for o, k, _ in kept
+            k.opening == f.opening
+            and k.lengths.shortest <= f.lengths.shortest
+            and k.lengths.longest >= f.lengths.longest
+            and rank(k.held) <= rank(f.held)
+            for k in kept
         ):
-            kept.append((opening, lengths, grasp))
+            kept.append(f)
     return kept
 
 
-def _candidates(
-    plan: GripperPlan, fate: SegmentFate, part: AssemblyPart, primitive: FittedPrimitive
-) -> list[AssemblyGrasp]:
-    """Grasps of the segment in the assembly's frame, with the palm of the widest gripper that may take it."""
-    choice = plan.assembly.fingers
-    drives = [a for a in plan.assembly.actuators if a.fingers == fate.fingers]
+def segment_grasps(plan: GripperPlan, name: str, segment: int) -> list[AssemblyGrasp]:
+    """Grasps of a part's box or cylinder in the assembly's frame, with the palm of the widest gripper that may take it."""
+    part, primitive, choice = plan.assembly.parts[name], plan.primitives[name][segment], plan.assembly.fingers
+    fingers = FINGERS_OF[primitive.kind]
+    drives = [a for a in plan.assembly.actuators if a.fingers == fingers]
     widest = [a.max_opening for a in drives]
     options: dict[str, Any] = {
         "directions": choice.directions,
@@ -251,8 +281,8 @@ def _candidates(
         "clearance": choice.clearance,
         "max_opening": 2.0 if None in widest else max(w for w in widest if w is not None),
     }
-    if fate.fingers == 2:
-        faces = [int(f) for f in plan.segmentations[part.name].segments[fate.segment].faces]
+    if fingers == 2:
+        faces = [int(f) for f in plan.segmentations[name].segments[segment].faces]
         grasps = _core.jaw_grasps(part.mesh, faces, **options)
     else:
         length = float(primitive.size[2])
@@ -273,4 +303,6 @@ def _placed(grasp: AssemblyGrasp, T_assembly_mesh: NDArray[np.float64], stroke: 
         thickness=grasp.thickness,
         clearance=min(grasp.clearance, stroke / 2),
         palm_radius=float(np.hypot(reach, grasp.width / 2)) + PALM_MARGIN,
+        contact_length=grasp.contact_length,
+        contact_width=grasp.contact_width,
     )

@@ -19,6 +19,7 @@ from . import (
     grasp_search,
     grasp_success,
     grasping_trials,
+    gripper_assembly,
     gripper_sets,
     ik_query,
     physics,
@@ -60,6 +61,7 @@ TOPICS = (
     three_ways,
     segmentation,
     gripper_sets,
+    gripper_assembly,
 )
 ENTRIES: dict[str, Entry] = {e.name: e for topic in TOPICS for e in topic.ENTRIES}
 ALSO = {

@@ -84,6 +84,10 @@ class Result:
         if found is not None:
             self.checks.append(Check("S", f"{what}: {found}", found.answer != REVERSED, clock, found.answer))
 
+    def answered(self, what: str, answer: str) -> None:
+        """A claim of the paper that is no matter of chance, with its answer."""
+        self.checks.append(Check("S", what, answer != REVERSED, answer=answer))
+
     def to_dict(self) -> dict[str, Any]:
         return {
             "rows": [

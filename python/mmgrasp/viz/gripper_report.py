@@ -7,6 +7,7 @@ from html import escape
 from pathlib import Path
 
 from .. import _core
+from ..grippers.holding import Held
 from ..grippers.planning import GripperPlan
 from .gripper_pictures import picture_name
 from .report import CSS, plural, table
@@ -105,9 +106,20 @@ def _operations(plan: GripperPlan, pictures: Path | None) -> str:
         least = f"at least {_millimetres(r.min_finger_length)}"
         most = "" if r.max_finger_length is None else f", at most {_millimetres(r.max_finger_length)}"
         gripper = result.grippers[result.gripper_of_part[i]].name
-        rows.append([escape(part), escape(gripper), escape(r.segment), _millimetres(r.opening), least + most])
-    out += table(["Operation", "Gripper", "Held by", "Opening [mm]", "Fingers [mm]"], rows, {3})
+        row = [escape(part), escape(gripper), escape(r.segment), _millimetres(r.opening), least + most]
+        rows.append(row + _held(plan.holdings[result.requirement_of_part[i]]))
+    head = ["Operation", "Gripper", "Held by", "Opening [mm]", "Fingers [mm]"]
+    if plan.assembly.holding is not None:
+        head += ["Load may grow by", "Moment of the insertion [N m]", "Torque a pad holds [N m]", "A pad touches [mm²]"]
+    out += table(head, rows, {3, 5, 6, 7, 8})
     return out + "".join(_figure(pictures, picture_name("operation", s.name), s.name) for s in plan.assembly.steps)
+
+
+def _held(held: Held | None) -> list[str]:
+    if held is None:
+        return []
+    numbers = (held.safety, held.insertion_moment, held.pad_torque, 1e6 * held.contact_area)
+    return [f"{round(number, 6):.3g}" for number in numbers]
 
 
 def _segments(plan: GripperPlan, pictures: Path | None) -> str:

@@ -283,5 +283,49 @@ TEST(MinimalGrippers, StopsWhenAsked) {
   if (!r.grippers.empty()) expect_complete(r, requirements);
 }
 
+TEST(PreferredGrippers, TakeTheBestSegmentThatNoMoreGrippersAsk) {
+  // a by either segment with one gripper; c's better segment would ask for a gripper of its own.
+  const std::vector<SegmentRequirement> requirements{segment("a", 2, 0.020), segment("b", 2, 0.024),
+                                                     segment("a", 2, 0.026), segment("c", 2, 0.022),
+                                                     segment("c", 2, 0.090)};
+  const std::vector<GripperActuator> jaws{{"jaws", 2, 0.010}};
+  const MinimalGrippersResult r = preferred_grippers(requirements, {1, 1, 2, 1, 5}, jaws);
+  EXPECT_EQ(r.outcome, Outcome::solved);
+  EXPECT_EQ(r.parts, (std::vector<std::string>{"a", "b", "c"}));
+  EXPECT_EQ(r.requirement_of_part, (std::vector<int>{2, 1, 3}));
+  EXPECT_EQ(r.grippers.size(), 1u);
+  EXPECT_EQ(r.lower_bound, 1);
+  EXPECT_EQ(preferred_grippers(requirements, {2, 1, 1, 1, 0}, jaws).requirement_of_part, (std::vector<int>{0, 1, 3}));
+  EXPECT_THROW(preferred_grippers(requirements, {1, 2}, jaws), InvalidInput);
+}
+
+TEST(PreferredGrippers, CostNoMoreAndChangeNoMoreOftenThanTheLeastSet) {
+  Rng rng(11);
+  int bettered = 0;
+  for (int k = 0; k < 40; ++k) {
+    std::vector<SegmentRequirement> requirements;
+    std::vector<double> values;
+    for (int p = 0; p < 8; ++p) {
+      for (int s = 0; s < 3; ++s) {
+        requirements.push_back(segment(std::to_string(p), 2 + s % 2, rng.uniform(0.01, 0.1)));
+        values.push_back(rng.uniform(0, 1));
+      }
+    }
+    const std::vector<GripperActuator> drives{{"jaws", 2, 0.020}, {"centric", 3, 0.020}};
+    const MinimalGrippersResult least = minimal_grippers(requirements, drives);
+    const MinimalGrippersResult best = preferred_grippers(requirements, values, drives);
+    EXPECT_EQ(best.cost, least.cost);
+    EXPECT_LE(best.changes, least.changes);
+    expect_complete(best, requirements);
+    double before = 0, after = 0;
+    for (int p = 0; p < 8; ++p) {
+      before += values[least.requirement_of_part[p]];
+      after += values[best.requirement_of_part[p]];
+    }
+    bettered += after > before;
+  }
+  EXPECT_GT(bettered, 20);
+}
+
 }  // namespace
 }  // namespace mmgrasp

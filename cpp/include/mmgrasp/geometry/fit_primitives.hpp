@@ -41,7 +41,8 @@ struct MMGRASP_EXPORT FittedPrimitive {
 /// that of the segment's convex hull, of those that have surface on them (P1, section 5.2.2; cones and spheres are
 /// ours). Cylinders, cones and spheres are found by RANSAC (PCL, Schnabel, Wahl and Klein 2007's criteria: distance and
 /// normal) and refined by least squares over the corners of the faces, which lie on the true surface where chords do
-/// not. Walls that face inwards (bores) are never offered, nor are pairs of a box' faces of which one has less than a
+/// not. A cylinder is as long as its outward wall: bores, which may run on, do not count. Walls that face inwards
+/// (bores) are never offered, nor are pairs of a box' faces of which one has less than a
 /// tenth of its area on it. `labels`: the segment of each face, as in MeshSegmentation. Throws InvalidInput when there
 /// is not one label >= 0 a face. Nothing when the monitor stops it.
 MMGRASP_EXPORT std::vector<FittedPrimitive> fit_primitives(const TriangleMesh& mesh, const std::vector<int>& labels,

@@ -214,8 +214,13 @@ std::vector<FittedPrimitive> fit_primitives(const TriangleMesh& mesh, const std:
     const SegmentSurface surface = detail::segment_surface(outward, faces);
     const double hull_volume = surface.hull.volume * std::pow(surface.scale, 3);
     FittedPrimitive best = detail::box_candidate(surface);
-    for (FittedPrimitive& round : detail::round_candidates(surface, monitor)) {
-      if (std::abs(round.volume - hull_volume) < std::abs(best.volume - hull_volume)) best = std::move(round);
+    double off = std::abs(best.volume - hull_volume);
+    for (detail::RoundCandidate& round : detail::round_candidates(surface, monitor)) {
+      const double other = std::abs(round.primitive.volume - hull_volume);
+      if (other >= off) continue;
+      off = other;
+      round.trim();
+      best = std::move(round.primitive);
     }
     best.hull_volume = hull_volume;
     if (monitor.stopped()) return {};

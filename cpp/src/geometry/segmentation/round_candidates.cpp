@@ -24,9 +24,10 @@ constexpr int kSectors = 36;
 constexpr double kLeastTurn = 0.5, kLeastSphere = 0.25, kLeastShare = 0.05;
 
 struct Cover {
-  double area = 0;       ///< Area of the faces that lie on the model and face outwards.
-  double turn = 0;       ///< Share of the turn around the axis where there are some.
-  double deviation = 0;  ///< Mean distance of their corners.
+  double area = 0;                            ///< Area of the faces that lie on the model and face outwards.
+  double turn = 0;                            ///< Share of the turn around the axis where there are some.
+  double deviation = 0;                       ///< Mean distance of their corners.
+  double low = kInfinity, high = -kInfinity;  ///< Where they begin and end along the axis.
 };
 
 Cover cover_of(const SegmentSurface& s, const RoundFit& fit) {
@@ -40,6 +41,10 @@ Cover cover_of(const SegmentSurface& s, const RoundFit& fit) {
     double off = 0;
     for (const Vector3d& corner : s.corners[f]) off = std::max(off, std::abs(fit.distance(corner, unused)));
     if (off > kOnSurface || s.face_normals[f].dot(normal) < std::cos(kAlike)) continue;
+    for (const Vector3d& corner : s.corners[f]) {
+      out.low = std::min(out.low, (corner - fit.point).dot(fit.axis));
+      out.high = std::max(out.high, (corner - fit.point).dot(fit.axis));
+    }
     out.area += s.areas[f];
     out.deviation += s.areas[f] * off;
     // A wide facet covers all sectors between its corners.
@@ -123,8 +128,15 @@ FittedPrimitive placed(const SegmentSurface& s, const RoundFit& fit, const Cover
 
 }  // namespace
 
-std::vector<FittedPrimitive> round_candidates(const SegmentSurface& s, const Monitor& monitor) {
-  std::vector<FittedPrimitive> out;
+void RoundCandidate::trim() {
+  if (primitive.kind != PrimitiveKind::cylinder) return;
+  primitive.T_mesh_primitive.translation() = wall_middle;
+  primitive.size.z() = wall_length;
+  primitive.volume = kPi / 4 * primitive.size.x() * primitive.size.y() * wall_length;
+}
+
+std::vector<RoundCandidate> round_candidates(const SegmentSurface& s, const Monitor& monitor) {
+  std::vector<RoundCandidate> out;
   for (const RoundModel model : {RoundModel::cylinder, RoundModel::cone, RoundModel::sphere}) {
     std::vector<Vector3d> points, normals;
     const std::size_t stride = 1 + s.points.size() / kMostPoints;
@@ -152,7 +164,10 @@ std::vector<FittedPrimitive> round_candidates(const SegmentSurface& s, const Mon
         const bool sphere = fit->kind == RoundFit::Kind::sphere;
         const bool enough =
             sphere ? cover.area > kLeastSphere * 4 * kPi * fit->radius * fit->radius : cover.turn >= kLeastTurn;
-        if (enough && cover.area > kLeastShare * s.area) out.push_back(placed(s, *fit, cover));
+        if (enough && cover.area > kLeastShare * s.area) {
+          out.push_back({placed(s, *fit, cover), s.to_mesh(fit->point + (cover.low + cover.high) / 2 * fit->axis),
+                         s.scale * (cover.high - cover.low)});
+        }
       }
       std::vector<char> taken(points.size(), 0);
       for (const int i : on) taken[i] = 1;

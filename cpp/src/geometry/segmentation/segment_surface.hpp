@@ -26,8 +26,17 @@ struct SegmentSurface {
 
 SegmentSurface segment_surface(const TriangleMesh& mesh, const std::vector<int>& faces);
 
+/// A round primitive as long as the segment, and where its outward wall is: the faces of a bore that runs on through
+/// the next body are the segment's, too, but there is nothing to hold.
+struct RoundCandidate {
+  FittedPrimitive primitive;
+  Eigen::Vector3d wall_middle = Eigen::Vector3d::Zero();  ///< On the axis [m].
+  double wall_length = 0;                                 ///< [m]
+  void trim();                                            ///< Makes a cylinder as long as its wall.
+};
+
 /// Round primitives with outward surface around at least half a turn (a sphere: a quarter of it), in the mesh's frame.
-std::vector<FittedPrimitive> round_candidates(const SegmentSurface& surface, const Monitor& monitor);
+std::vector<RoundCandidate> round_candidates(const SegmentSurface& surface, const Monitor& monitor);
 
 /// The box around the segment of the least volume that is aligned with a large flat part of it, or with none.
 FittedPrimitive box_candidate(const SegmentSurface& surface);

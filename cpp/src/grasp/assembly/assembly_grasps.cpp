@@ -101,6 +101,13 @@ std::vector<Polygon> overlap_of(const std::vector<Polygon>& first, const std::ve
   return out;
 }
 
+double area_of(const Polygon& p) {
+  double area = 0;
+  for (std::size_t i = 1; i + 1 < p.size(); ++i)
+    area += detail::edge_side((p[i] - p[0]).head<2>(), (p[i + 1] - p[0]).head<2>()) / 2;
+  return area;
+}
+
 /// Centre of area; none when there is no area.
 std::optional<Eigen::Vector2d> centre_of(const std::vector<Polygon>& pieces) {
   double area = 0;
@@ -152,10 +159,11 @@ void add_pair(const TriangleMesh& mesh, const Facet& a, const Facet& b, const As
     const double turn = kTwoPi * i / options.directions;
     const Eigen::Vector2d approach(std::cos(turn), std::sin(turn)), across(-approach.y(), approach.x());
     double near = detail::kInfinity, far = -detail::kInfinity;
+    std::vector<Polygon> strip;  // what fingers cover
     for (const Polygon& whole : overlap) {
       Polygon piece = detail::clip_polygon(whole, {across, across.dot(*middle) + options.finger_width / 2});
-      piece = detail::clip_polygon(piece, {-across, -across.dot(*middle) + options.finger_width / 2});
-      for (const Eigen::Vector3d& p : piece) {
+      strip.push_back(detail::clip_polygon(piece, {-across, -across.dot(*middle) + options.finger_width / 2}));
+      for (const Eigen::Vector3d& p : strip.back()) {
         near = std::min(near, approach.dot(p.head<2>() - *middle));
         far = std::max(far, approach.dot(p.head<2>() - *middle));
       }
@@ -168,6 +176,10 @@ void add_pair(const TriangleMesh& mesh, const Facet& a, const Facet& b, const As
       grasp.T_active_tool.linear().col(1) = z.cross(normal);
       grasp.T_active_tool.linear().col(2) = z;
       grasp.T_active_tool.translation() = axes * Eigen::Vector3d(tip.x(), tip.y(), height);
+      double area = 0;
+      for (const Polygon& piece : strip) area += area_of(detail::clip_polygon(piece, {approach, approach.dot(tip)}));
+      grasp.contact_length = depth;
+      grasp.contact_width = area / depth;
       out.push_back(grasp);
     }
   }
@@ -268,6 +280,8 @@ std::vector<AssemblyGrasp> centric_grasps(const CylinderFit& cylinder, const Ass
             T_cylinder_tool.linear() * Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()).toRotationMatrix();
         T_cylinder_tool.translation().z() = from_high ? cylinder.high - depth : cylinder.low + depth;
         grasp.T_active_tool = cylinder.T_mesh_cylinder * T_cylinder_tool;
+        grasp.contact_length = depth;
+        grasp.contact_width = std::min(options.finger_width, cylinder.diameter * std::tan(detail::kPi / 3));
         out.push_back(grasp);
       }
     }

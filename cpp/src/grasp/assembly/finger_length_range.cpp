@@ -287,7 +287,12 @@ void AssemblyGrasp::check() const {
   positive("width", width);
   positive("thickness", thickness);
   positive("palm_radius", palm_radius);
-  require(std::isfinite(clearance) && clearance >= 0, "clearance", clearance, "must be at least 0 [m]");
+  const auto not_negative = [](const char* field, double value) {
+    require(std::isfinite(value) && value >= 0, field, value, "must be at least 0 [m]");
+  };
+  not_negative("clearance", clearance);
+  not_negative("contact_length", contact_length);
+  not_negative("contact_width", contact_width);
   if (!is_pose(T_active_tool)) throw InvalidInput("T_active_tool is no pose: rotation and translation expected");
 }
 

@@ -79,7 +79,7 @@ void bind_holding(py::module_& m) {
           "pad_radius"_a = py::none(),
           "Force of each finger [N], Coulomb's coefficient, plane strain modulus of pad and part together [Pa], radius "
           "of hollow pads [m] (None: flat).")
-      .def_readonly("force", &F::force, "Of each finger [N].")
+      .def_readonly("force", &F::force, "Force of each finger [N].")
       .def_readonly("friction", &F::friction, "Coulomb's coefficient between pad and part.")
       .def_readonly("modulus", &F::modulus, "Plane strain modulus of pad and part together [Pa].")
       .def_property_readonly(
@@ -87,7 +87,7 @@ void bind_holding(py::module_& m) {
           [](const F& f) {
             return OptionalNumber(f.pad_radius < detail::kInfinity ? py::object(py::float_(f.pad_radius)) : py::none());
           },
-          "Of hollow pads [m]; None: flat.")
+          "Radius of hollow pads [m]; None: flat.")
       .def("__repr__", [](const F& f) {
         const auto shown = [](double v) { return std::string(py::repr(py::float_(v))); };
         return "FingerGrip(" + shown(f.force) + " N, friction " + shown(f.friction) + ")";
@@ -97,9 +97,10 @@ void bind_holding(py::module_& m) {
       .def_readonly("contact", &H::contact, "One pad's.")
       .def_readonly("pad_torque", &H::pad_torque,
                     "Torque about its normal that a pad holds beside the forces it carries; least of all pads [N m].")
-      .def_readonly("insertion_moment", &H::insertion_moment,
-                    "Of the insertion's resistance about the middle between the pads [N m]; 0: fingers stand evenly "
-                    "about the hole's axis.")
+      .def_readonly(
+          "insertion_moment", &H::insertion_moment,
+          "Moment of the insertion's resistance about the middle between the pads [N m]; 0: fingers stand evenly "
+          "about the hole's axis.")
       .def_readonly("safety", &H::safety,
                     "The loads may grow at least by this factor before a pad slips; infinite without loads.")
       .def("__repr__",

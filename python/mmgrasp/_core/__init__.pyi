@@ -5773,7 +5773,7 @@ class AssemblyGrasp:
     @property
     def contact_length(self) -> float:
         """
-        By which a pad overlaps what it holds, along the approach from the tips [m]; 0: not known.
+        How far a pad overlaps what it holds, along the approach from the tips [m]; 0: not known.
         """
     @property
     def contact_width(self) -> float:
@@ -6149,7 +6149,7 @@ class FingerGrip:
     @property
     def force(self) -> float:
         """
-        Of each finger [N].
+        Force of each finger [N].
         """
     @property
     def friction(self) -> float:
@@ -6164,7 +6164,7 @@ class FingerGrip:
     @property
     def pad_radius(self) -> float | None:
         """
-        Of hollow pads [m]; None: flat.
+        Radius of hollow pads [m]; None: flat.
         """
 class GraspHolding:
     """
@@ -6180,7 +6180,7 @@ class GraspHolding:
     @property
     def insertion_moment(self) -> float:
         """
-        Of the insertion's resistance about the middle between the pads [N m]; 0: fingers stand evenly about the hole's axis.
+        Moment of the insertion's resistance about the middle between the pads [N m]; 0: fingers stand evenly about the hole's axis.
         """
     @property
     def pad_torque(self) -> float:

@@ -78,8 +78,8 @@ struct MMGRASP_EXPORT ObjectPathResult {
   int violation = 0;
   /// One number for each pose: 2 when no arm configuration reaches it, 1 when all that do collide, else 0.
   std::vector<int> violations;
-  /// When every pose can be reached, but there is no path: for each pose but the last, how the next one is missed. 0: it
-  /// is not; 1: each motion there jumps to another posture of the arm; 2: each that does not collides or leaves the
+  /// When every pose can be reached, but there is no path: for each pose but the last, how the next one is missed. 0:
+  /// it is not; 1: each motion there jumps to another posture of the arm; 2: each that does not collides or leaves the
   /// object's path. Else empty.
   std::vector<int> gaps;
   Rejections rejections;   ///< Configurations rejected, of those that were checked.

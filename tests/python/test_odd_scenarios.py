@@ -19,6 +19,7 @@ BROKE = {
     306: "solved",  # a heading listed twice, on both sides of half a turn
     388: "solved",  # as 133, in a region
     477: "not_found",  # blocks that touch the tray's walls: no motion lifts them without touching
+    543: "solved",  # a turn of half a micro-radian on the way, taken for standing still
 }
 SEEDS = [1, 2, 3, 4, 5, 6, *BROKE]
 

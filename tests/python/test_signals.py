@@ -8,7 +8,7 @@ import resource
 import signal
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +19,15 @@ from mmgrasp.cli.output_folder import OutputFolder
 from mmgrasp.cli.signals import Ended, ended_by_signals, uninterrupted
 
 MMGRASP = [sys.executable, "-m", "mmgrasp"]
+
+
+@pytest.fixture(autouse=True)
+def signals_end_programs() -> Iterator[None]:
+    """Who runs the tests may ignore signals (nohup does), and programs inherit that."""
+    before = {number: signal.signal(number, signal.SIG_DFL) for number in (signal.SIGTERM, signal.SIGHUP)}
+    yield
+    for number, handler in before.items():
+        signal.signal(number, handler)
 
 
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGTERM, 143), (signal.SIGHUP, 129)])

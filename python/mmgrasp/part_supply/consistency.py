@@ -183,7 +183,8 @@ def _counts(plan: Plan) -> Found:
 def _route(plan: Plan) -> Found:
     for i, leg in enumerate(plan["route"]):
         poses = leg["poses"]
-        if len(poses) > 2 and any(_same(a, b) for a, b in pairwise(poses)):
+        # exactly: planned routes turn by less than a micro-radian where two headings nearly agree
+        if len(poses) > 2 and any(a == b for a, b in pairwise(poses)):
             yield f"route[{i}].poses", "the base stands still between two poses"
 
 

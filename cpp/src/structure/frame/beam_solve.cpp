@@ -11,7 +11,7 @@ namespace mmgrasp::detail {
 namespace {
 
 constexpr int kMostDense = 300;  // unknowns; above, most of the matrix is zero and worth skipping
-// Of the matrix scaled to ones on its diagonal. What can move leaves a pivot of some roundings: 1e-16 and 1e-34 each.
+// The matrix is scaled to ones on its diagonal; what can move leaves a pivot of some roundings, 1e-16 and 1e-34 each.
 template <class Scalar>
 constexpr double kLeastPivot = std::is_same_v<Scalar, double> ? 1e-12 : 1e-29;
 

@@ -14,6 +14,7 @@ processes), `.problems` (benchmarks' problems), `.reproduce`.
 import sys as _sys
 import typing as _typing
 
+from . import _interpreter as _interpreter  # first: refuses where the module would hang
 from . import _core as _core
 from . import base as base
 from . import collision as collision

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
 import threading
 from pathlib import Path
 from typing import Any
@@ -86,3 +88,10 @@ def test_threads_share_one_seed_database() -> None:
     assert 24 <= len(database) <= 50  # two solutions a call at least
     for seed in database.seeds(mg.pose([0.8, 0, 0.9], rpy=down), 50):
         assert np.isfinite(seed).all()
+
+
+def test_a_subinterpreter_is_refused_at_once() -> None:
+    """The module would wait in it for ever; a process of its own, since interpreters share what fails in them."""
+    code = "import _xxsubinterpreters as s; s.run_string(s.create(), 'import mmgrasp')"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False)
+    assert run.returncode == 1 and "cannot be imported in a subinterpreter" in run.stderr

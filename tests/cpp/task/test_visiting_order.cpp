@@ -115,6 +115,19 @@ TEST(VisitingOrder, AStopThatCannotBeReachedIsNamed) {
   const VisitingOrder order = order_stops(problem, stops);
   EXPECT_TRUE(order.stops.empty());
   EXPECT_EQ(order.unreachable, 3);
+  EXPECT_EQ(order.from, -1);
+}
+
+/// Cells of millimetres run out of base poses on the way around the wall; larger ones are tried first.
+TEST(VisitingOrder, FineCellsFindWhatCoarseOnesFind) {
+  PartSupplyProblem problem = walled();
+  std::vector<Stop> stops(2);
+  stops[0].pose = {0.9, 0, 0};
+  stops[1].pose = {-0.9, 0, 0};
+  const VisitingOrder usual = order_stops(problem, stops);
+  EXPECT_EQ(usual.stops, (std::vector<int>{1, 0}));
+  problem.options.route_resolution = 0.002;
+  EXPECT_EQ(order_stops(problem, stops).stops, usual.stops);
 }
 
 }  // namespace

@@ -59,7 +59,8 @@ struct MMGRASP_EXPORT PartSupplyOptions {
   /// Wall-clock cap of each planned motion [s]; > 0. A budget of 2000 states drawn for each of these seconds normally
   /// ends the search earlier, so that the load of the machine does not change a plan.
   double motion_time_limit = 5.0;
-  double route_resolution = 0.10;  ///< Cell edge of the base route's search [m]; > 0.
+  /// Smallest cell edge of the base route's search [m]; > 0. Cells of some 0.1 m are tried before smaller ones.
+  double route_resolution = 0.10;
   int robustness_samples = 2000;   ///< Base poses drawn at each stop for the check before returning; >= 0.
   unsigned seed = 1;
   int threads = 0;

@@ -9,10 +9,11 @@
 
 namespace mmgrasp {
 
-/// An order of stops, or which stop cannot be driven to.
+/// An order of stops, or between which of them no drive was found.
 struct MMGRASP_EXPORT VisitingOrder {
   std::vector<int> stops;  ///< Indices of the stops as they are visited; empty when one cannot be driven to.
   int unreachable = -1;    ///< Then: that stop's index, -1 for the goal.
+  int from = -1;           ///< Where no drive to it was found from: a stop's index, -1 for the start.
 };
 
 /// The order in which the stops are visited from the problem's start to its goal, all parts in place. Up to 6 stops are

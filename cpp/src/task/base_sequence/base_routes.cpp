@@ -9,7 +9,8 @@ namespace mmgrasp::detail {
 namespace {
 
 constexpr double kPadding = 0.01;  // [m]
-constexpr double kCoarsest = 8;    // Cells at most this much larger than asked for are tried where a search gives up.
+constexpr double kUsual = 0.1;     // Cells of this size are tried first where smaller ones are asked for [m].
+constexpr double kCoarsest = 8;    // Cells at most this much larger than the first are tried where a search gives up.
 
 std::array<double, 6> key_of(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   return {from.x(), from.y(), from.z(), to.x(), to.y(), to.z()};
@@ -19,6 +20,19 @@ CheckerOptions with_padding(double padding) {
   CheckerOptions options;
   options.padding = padding;
   return options;
+}
+
+/// Searches in ever larger cells until one search does not give up; only a way that is found is an answer.
+template <class Search>
+BasePath search_coarser(const Search& search, double first) {
+  for (double cells = 2 * first; cells <= kCoarsest * first; cells *= 2) {
+    BasePath path = search(cells);
+    if (path.outcome == Outcome::solved || path.outcome == Outcome::stopped) return path;
+    if (path.outcome != Outcome::timeout) break;
+  }
+  BasePath none;
+  none.outcome = Outcome::timeout;
+  return none;
 }
 
 }  // namespace
@@ -31,26 +45,27 @@ BaseRoutes::BaseRoutes(const PartSupplyProblem& problem, const Monitor& monitor)
 
 BasePath BaseRoutes::plan(CollisionChecker& padded, CollisionChecker& bare, const Eigen::Vector3d& from,
                           const Eigen::Vector3d& to, const Monitor& monitor) const {
-  const auto search = [&](CollisionChecker& checker, double factor) {
+  const auto search = [&](CollisionChecker& checker, double resolution) {
     BaseRouteOptions options;
     options.base = problem_.robot.base();
-    options.resolution = factor * problem_.options.route_resolution;
+    options.resolution = resolution;
     return plan_base_route(checker, problem_.home, from, to, options, monitor);
   };
-  const auto settled = [](const BasePath& path) {
-    return path.outcome == Outcome::solved || path.outcome == Outcome::stopped;
+  const auto search_both = [&](double resolution) {
+    BasePath path = search(padded, resolution);
+    const bool is_narrow =
+        path.outcome != Outcome::solved && path.outcome != Outcome::stopped && path.outcome != Outcome::timeout;
+    return is_narrow ? search(bare, resolution) : path;
   };
-  bool gave_up = false;
-  for (double factor = 1; factor <= kCoarsest; factor *= 2) {
-    BasePath path = search(padded, factor);
-    if (!settled(path) && path.outcome != Outcome::timeout) path = search(bare, factor);
-    if (settled(path)) return path;
-    if (path.outcome != Outcome::timeout) break;
-    gave_up = true;  // larger cells may lead there in the same number of base poses
-  }
-  BasePath path;
-  path.outcome = Outcome::timeout;
-  return gave_up ? path : search(bare, 0.5);  // a narrow place may need a finer grid
+  const double asked = problem_.options.route_resolution;
+  double first = asked;
+  while (2 * first <= kUsual) first *= 2;
+  BasePath path = search_both(first);
+  // Larger cells may lead there in the number of base poses that ran out, smaller ones through narrow places.
+  if (path.outcome == Outcome::timeout) return search_coarser(search_both, first);
+  for (double cells = first / 2; path.outcome == Outcome::not_found && cells > 0.9 * asked; cells /= 2)
+    path = search_both(cells);
+  return path.outcome == Outcome::not_found ? search(bare, asked / 2) : path;
 }
 
 BasePath BaseRoutes::between(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {

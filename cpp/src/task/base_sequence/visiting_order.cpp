@@ -41,14 +41,25 @@ class StopOrdering {
       order = order_by_estimates();
     }
     if (!order.empty() || n_ == 0) return {order};
+    return missing_drive();
+  }
+
+ private:
+  /// A drive that was not found, from the start if there is one.
+  VisitingOrder missing_drive() const {
     VisitingOrder none;
-    for (int i = 0; i < n_; ++i) {
-      if (lengths_.rows() == n_ + 2 && !std::isfinite(lengths_(n_, i))) none.unreachable = i;
+    if (lengths_.rows() != n_ + 2) return none;
+    for (int i = n_ - 1; i >= -1; --i) {
+      for (int j = n_ + 1; j >= 0; --j) {
+        const int from = i < 0 ? n_ : i;
+        if (from == j || j == n_ || std::isfinite(lengths_(from, j))) continue;
+        none.from = i;
+        none.unreachable = j == n_ + 1 ? -1 : j;
+      }
     }
     return none;
   }
 
- private:
   /// Replaces lengths by those of planned drives.
   void plan(const std::vector<Leg>& legs) {
     std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> drives;

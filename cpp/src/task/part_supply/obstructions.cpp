@@ -16,6 +16,13 @@ std::string motion_advice(const std::string& stage) {
   return "raise motion_time_limit, or choose another home configuration";
 }
 
+/// Where a drive begins and ends, in words.
+std::string ends_of_drive(const Eigen::Vector3d& from, bool from_stop, const std::string& verb,
+                          const Eigen::Vector3d& to, const std::string& tray) {
+  return (from_stop ? "the stop at " + pose_text(from) : std::string("the start")) + verb +
+         (tray.empty() ? "the goal at " : "the stop at ") + pose_text(to);
+}
+
 }  // namespace
 
 Obstruction explain_robustness(const RobustnessResult& check, const std::vector<Stop>& stops) {
@@ -32,22 +39,23 @@ Obstruction explain_robustness(const RobustnessResult& check, const std::vector<
   return obstruction;
 }
 
-Obstruction explain_route(const Eigen::Vector3d& pose, const std::string& tray) {
+Obstruction explain_route(const Eigen::Vector3d& from, bool from_stop, const Eigen::Vector3d& to,
+                          const std::string& tray) {
   Obstruction obstruction;
   obstruction.stage = "route";
   obstruction.tray = tray;
-  obstruction.message = std::string("no drive from the start leads to ") +
-                        (tray.empty() ? "the goal at " : "the stop at ") + pose_text(pose) +
+  obstruction.message = "no drive from " + ends_of_drive(from, from_stop, " leads to ", to, tray) +
                         " with the arm at home: widen the way, choose a narrower home, or a finer route_resolution";
   return obstruction;
 }
 
-Obstruction explain_long_search(const Eigen::Vector3d& pose, const std::string& tray, double resolution) {
+Obstruction explain_long_search(const Eigen::Vector3d& from, bool from_stop, const Eigen::Vector3d& to,
+                                const std::string& tray, double resolution) {
   Obstruction obstruction;
   obstruction.stage = "route";
   obstruction.tray = tray;
-  obstruction.message = "the search for a drive to " + std::string(tray.empty() ? "the goal at " : "the stop at ") +
-                        pose_text(pose) + " gave up before it had tried every way: use a coarser route_resolution (" +
+  obstruction.message = "the search for a drive from " + ends_of_drive(from, from_stop, " to ", to, tray) +
+                        " gave up before it had tried every way: use a coarser route_resolution (" +
                         six_digits(resolution) + " m now) or widen the way";
   return obstruction;
 }

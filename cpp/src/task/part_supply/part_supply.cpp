@@ -224,7 +224,7 @@ class PartSupply {
     const std::vector<int>& order = visiting.stops;
     if (monitor_.stopped()) return false;
     if (order.size() != plan_.stops.size() || (order.empty() && !goal_is_reached(routes)))
-      return obstructed_route(routes, problem_.start, visiting.unreachable);
+      return obstructed_route(routes, visiting.from, visiting.unreachable);
     std::vector<Stop> ordered;
     for (int stop : order) ordered.push_back(plan_.stops[stop]);
     plan_.stops = std::move(ordered);
@@ -235,13 +235,15 @@ class PartSupply {
     return routes.between(problem_.start, problem_.goal).outcome == Outcome::solved;
   }
 
-  /// No drive leads to a stop, by its index, or to the goal (-1).
-  bool obstructed_route(BaseRoutes& routes, const Eigen::Vector3d& from, int stop) {
+  /// No drive leads from a stop, by its index, or the start (-1), to another, or to the goal (-1).
+  bool obstructed_route(BaseRoutes& routes, int last_stop, int stop) {
+    const Eigen::Vector3d from = last_stop < 0 ? problem_.start : plan_.stops[last_stop].pose;
     const Eigen::Vector3d to = stop < 0 ? problem_.goal : plan_.stops[stop].pose;
     const std::string tray = stop < 0 ? "" : plan_.regions[plan_.stops[stop].trays.front()].tray;
-    if (routes.between(from, to).outcome != Outcome::timeout) return obstructed(explain_route(to, tray));
+    if (routes.between(from, to).outcome != Outcome::timeout)
+      return obstructed(explain_route(from, last_stop >= 0, to, tray));
     plan_.outcome = Outcome::timeout;
-    return obstructed(explain_long_search(to, tray, problem_.options.route_resolution));
+    return obstructed(explain_long_search(from, last_stop >= 0, to, tray, problem_.options.route_resolution));
   }
 
   std::vector<PartRef> remaining(const std::set<PartRef>& picked) const {
@@ -318,7 +320,7 @@ class PartSupply {
       BasePath path = routes.between(legs[i].first, legs[i].second);
       if (monitor_.stopped()) return false;
       if (path.outcome != Outcome::solved)
-        return obstructed_route(routes, legs[i].first, i < plan_.stops.size() ? static_cast<int>(i) : -1);
+        return obstructed_route(routes, static_cast<int>(i) - 1, i < plan_.stops.size() ? static_cast<int>(i) : -1);
       plan_.route.push_back(std::move(path));
     }
     return true;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 
 #include "core/report.hpp"
 #include "mbm_problem.hpp"
@@ -64,7 +65,8 @@ int main(int argc, char** argv) {
     mmgrasp::CollisionChecker checker(problem.group, problem.world);
     bench::FclBaseline judge(problem.group, problem.world, false);
     const bench::EdgeSteps steps{mmgrasp::motion_bounds(checker), 0.02, kWorkspaceStep};
-    bench::OmplBaseline baseline(problem.group, problem.world, steps);
+    std::optional<bench::OmplBaseline> baseline;
+    if (with_baseline) baseline.emplace(problem.group, problem.world, steps);
     const double range = 0.05 * (problem.group.sample_upper() - problem.group.sample_lower()).norm();
     auto& runs = sets[problem.set];
     for (int seed = 1; seed <= seeds; ++seed) {
@@ -93,7 +95,7 @@ int main(int argc, char** argv) {
       }
       if (!with_baseline) continue;
       const double begin = bench::processor_seconds();
-      const auto answer = baseline.solve(problem.start, problem.goals, range, static_cast<unsigned>(seed), kLimit);
+      const auto answer = baseline->solve(problem.start, problem.goals, range, static_cast<unsigned>(seed), kLimit);
       Runs& run = runs["OMPL RRTConnect + FCL"];
       run.milliseconds.push_back(1e3 * (bench::processor_seconds() - begin));
       run.wall.push_back(1e3 * answer.seconds);

@@ -7,6 +7,7 @@
 
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/random.hpp"
+#include "mmgrasp/task/plan_to_check.hpp"
 #include "mmgrasp/verify/plan_check.hpp"
 #include "support/small_storeroom.hpp"
 
@@ -16,63 +17,6 @@ namespace {
 const ReachDatabase& database() {
   static const ReachDatabase shared = test::small_database(test::small_storeroom());
   return shared;
-}
-
-/// The plan as the independent checker wants it (what the two share: docs/methods/verify.md).
-verify::PlanToCheck to_check(const PartSupplyProblem& problem, const PartSupplyPlan& plan) {
-  verify::PlanToCheck check{source_of(problem.robot)};
-  check.planned_robot = written_source(problem.robot);
-  check.arm_joints = problem.arm.names();
-  for (int i = 0; i < problem.arm.size(); ++i) {
-    check.velocity_limits.push_back(problem.arm.velocity_limits()[i]);
-    check.acceleration_limits.push_back(problem.arm.acceleration_limits()[i]);
-  }
-  check.tip_link = problem.gripper.tool_link;
-  check.max_opening = problem.gripper.max_opening;
-  check.clearance = problem.gripper.clearance;
-  check.approach = problem.gripper.approach;
-  for (const HandJoint& finger : problem.gripper.joints)
-    check.fingers.push_back({finger.name, finger.closed, finger.open});
-  check.finger_links = problem.gripper.finger_links;
-  check.home = problem.home;
-  check.start = problem.start;
-  check.goal = problem.goal;
-  check.positioning_uncertainty = problem.options.positioning_uncertainty;
-  check.arrival_covariance = problem.arrival_covariance;
-  check.T_base_bin = problem.place_region.T_base_bin;
-  check.bin_size = problem.place_region.size;
-  check.drop_height = problem.place_region.drop_height;
-  for (const auto& [name, object] : problem.world.objects())
-    check.obstacles.push_back({name, object.shapes, object.T_world_object});
-  for (const Tray& tray : problem.trays) {
-    check.trays.push_back(tray.name);
-    for (const Part& part : tray.parts) {
-      verify::CheckedPart checked{{part.name, part.shapes, part.T_world_part}, tray.name, part.target, {}};
-      for (const Grasp& grasp : part.grasps) checked.grasps.push_back({grasp.T_object_hand, grasp.opening});
-      check.parts.push_back(checked);
-    }
-  }
-  check.grid = {plan.grid.origin, plan.grid.resolution, plan.grid.nx, plan.grid.ny, plan.grid.headings};
-  for (const BaseRegion& region : plan.regions) check.regions.push_back({region.tray, region.cells});
-  for (const Stop& stop : plan.stops) {
-    verify::CheckedStop checked{stop.pose, stop.radius, {}};
-    checked.arrivals = static_cast<int>(stop.arrivals);
-    checked.arrivals_served = static_cast<int>(stop.arrivals_served);
-    for (TrayId tray : stop.trays) checked.trays.push_back(problem.trays[tray].name);
-    check.stops.push_back(checked);
-  }
-  for (const BasePath& leg : plan.route) check.route.push_back(leg.poses);
-  for (const Pick& pick : plan.picks) {
-    const Tray& tray = problem.trays[pick.part.tray];
-    verify::CheckedPick checked{pick.stop, tray.name, tray.parts[pick.part.part].name, pick.grasp, {}};
-    for (const PickMotion& motion : pick.motions) {
-      checked.motions.push_back({to_string(motion.kind), motion.opening, motion.attached, motion.trajectory.times,
-                                 motion.trajectory.positions, motion.trajectory.velocities});
-    }
-    check.picks.push_back(checked);
-  }
-  check.lower_bound = plan.lower_bound;
-  return check;
 }
 
 std::string all_messages(const PartSupplyPlan& plan) {
@@ -94,7 +38,7 @@ TEST(PartSupply, SmallStoreroomIsSolvedAndHoldsForTheIndependentChecker) {
   EXPECT_GE(plan.robustness_rate, 0.999);
   verify::PlanCheckOptions options;
   options.samples = 100;
-  const verify::PlanCheckResult result = verify::check_plan(to_check(problem, plan), options);
+  const verify::PlanCheckResult result = verify::check_plan(plan_to_check(problem, plan), options);
   for (const verify::Fault& fault : result.faults)
     ADD_FAILURE() << fault.code << ", " << fault.where << ": " << fault.message;
   EXPECT_EQ(result.minimal_stops, 1);
@@ -118,7 +62,7 @@ TEST(PartSupply, StopsSayHowSureTheyAre) {
     EXPECT_LT(stop.arrivals_served, 990u);
     EXPECT_GE(stop.radius, problem.options.positioning_uncertainty);
   }
-  verify::PlanToCheck check = to_check(problem, plan);
+  verify::PlanToCheck check = plan_to_check(problem, plan);
   for (const verify::Fault& fault : verify::check_plan(check).faults)
     ADD_FAILURE() << fault.code << ", " << fault.where << ": " << fault.message;
   int& served = check.stops[0].arrivals_served;
@@ -288,7 +232,7 @@ TEST(PartSupply, WhereNoMotionIsFoundOtherStopsAreTried) {
   EXPECT_GT(in_front, 50u);  // they stay in the region: what is proven is proven with them
   verify::PlanCheckOptions options;
   options.samples = 100;
-  for (const verify::Fault& fault : verify::check_plan(to_check(problem, plan), options).faults)
+  for (const verify::Fault& fault : verify::check_plan(plan_to_check(problem, plan), options).faults)
     ADD_FAILURE() << fault.code << ", " << fault.where << ": " << fault.message;
 }
 

@@ -16,6 +16,7 @@ from .._core import verify as checks
 from .._files import check_folder, shipped
 from .._progress import Progress
 from ..documents.reading import RENAMED, Node, read_yaml
+from . import floor_map
 from .contact_rules import ContactRules, read_contact_rules
 from .robot_section import RobotSetup, choose_sections, find_file, read_setup
 from .scan_section import ScanReader, moved
@@ -228,10 +229,23 @@ def _read_covariance(node: Node) -> np.ndarray:
 def _read_obstacles(root: Node) -> list[Obstacle]:
     out = []
     for node in root["obstacles"].elements() if "obstacles" in root else []:
-        node.mapping("name", "pose " + SHAPE_KEYS)
+        node.mapping("name", f"pose {floor_map.KEYS} {SHAPE_KEYS}")
         pose = node["pose"].pose() if "pose" in node else np.eye(4)
-        out.append(Obstacle(node["name"].label(), pose, read_shapes(node, find_file)))
+        out.append(Obstacle(node["name"].label(), pose, _read_obstacle_shapes(node)))
     return out
+
+
+def _read_obstacle_shapes(node: Node) -> list[LinkShape]:
+    """A map's boxes, or the shapes of a body."""
+    if "map" not in node:
+        for key in ("height", "unknown"):
+            if key in node:
+                node[key].fail("only a map has it")
+        return read_shapes(node, find_file)
+    for key in SHAPE_KEYS.split():
+        if key in node:
+            node[key].fail("a map has no other shape")
+    return floor_map.read_floor_map(node)
 
 
 def _read_floor(root: Node, obstacles: list[Obstacle]) -> float | None:

@@ -2952,7 +2952,7 @@ class PartSupplyProblem:
             approach_distance: float = 0.08  # straight move from pre-grasp to grasp [m]
             lift_height: float = 0.12  # straight upward move after closing [m]
             motion_time_limit: float = 5.0  # for each planned motion [s]
-            route_resolution: float = 0.1  # cell edge of the base route's search [m]
+            route_resolution: float = 0.1  # smallest cell edge of the base route's search [m]; cells of 0.1 m are tried before smaller ones
             robustness_samples: int = 2000  # base poses drawn at each stop for the check before returning
             seed: int = 1  # same seed, same plan
             threads: int = 0  # 0: all; does not change the answer

@@ -29,7 +29,9 @@ const std::vector<OptionField<Options>>& supply_fields() {
       option<Options>("approach_distance", &Options::approach_distance, "straight move from pre-grasp to grasp [m]"),
       option<Options>("lift_height", &Options::lift_height, "straight upward move after closing [m]"),
       option<Options>("motion_time_limit", &Options::motion_time_limit, "for each planned motion [s]"),
-      option<Options>("route_resolution", &Options::route_resolution, "smallest cell edge of the base route's search [m]; cells of 0.1 m are tried before smaller ones"),
+      option<Options>(
+          "route_resolution", &Options::route_resolution,
+          "smallest cell edge of the base route's search [m]; cells of 0.1 m are tried before smaller ones"),
       option<Options>("robustness_samples", &Options::robustness_samples,
                       "base poses drawn at each stop for the check before returning"),
       option<Options>("seed", &Options::seed, "same seed, same plan"),

@@ -40,7 +40,7 @@ def write_map(
     return read_yaml(folder / "obstacle.yaml").root["walls"]
 
 
-def covered(shapes: list[Any], rows: int, columns: int, yaw: float = 0.0) -> np.ndarray:
+def covered(shapes: Any, rows: int, columns: int, yaw: float = 0.0) -> np.ndarray:
     """How often each cell's middle lies in a box, (rows downwards, columns), by the boxes' own poses."""
     x = -1.0 + np.array([[0.1 * (c + 0.5) * np.cos(yaw) - 0.1 * (rows - r - 0.5) * np.sin(yaw) for c in range(columns)] for r in range(rows)])  # fmt: skip
     y = 2.0 + np.array([[0.1 * (c + 0.5) * np.sin(yaw) + 0.1 * (rows - r - 0.5) * np.cos(yaw) for c in range(columns)] for r in range(rows)])  # fmt: skip

@@ -61,7 +61,7 @@ struct MMGRASP_EXPORT PartSupplyOptions {
   double motion_time_limit = 5.0;
   /// Smallest cell edge of the base route's search [m]; > 0. Cells of some 0.1 m are tried before smaller ones.
   double route_resolution = 0.10;
-  int robustness_samples = 2000;   ///< Base poses drawn at each stop for the check before returning; >= 0.
+  int robustness_samples = 2000;  ///< Base poses drawn at each stop for the check before returning; >= 0.
   unsigned seed = 1;
   int threads = 0;
   void check() const;

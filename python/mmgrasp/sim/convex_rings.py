@@ -13,10 +13,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from .._core import Cylinder, InvalidInput, LinkShape, Mesh, pose
 
-SECTORS = 16
+SECTORS = 12
 LOOK = 1e-6  # beside a bend the outline is taken so far inside the slice [m]
 SAME = 2e-5  # holes that differ by less are one slice [m]
-ROUGH = 1e-4  # so does the outside [m]
+ROUGH = 3e-4  # so does the outside [m]
 POLYGON = 1.03  # corners of a hole are at most so much farther from the axis than its sides: fifteen corners or more
 
 
@@ -97,7 +97,7 @@ def _inner(segments: NDArray[np.float64]) -> float:
     share = np.clip(-(segments[:, 0] * along).sum(axis=1) / length, 0, 1)
     nearest = np.linalg.norm(segments[:, 0] + share[:, None] * along, axis=1).min()
     radii = np.linalg.norm(segments, axis=2)
-    return float(radii[radii < nearest * POLYGON].max())
+    return float(np.quantile(radii[radii < nearest * POLYGON], 0.75, method="lower"))  # cross holes leave a few beyond
 
 
 def _holds_axis(segments: NDArray[np.float64]) -> bool:

@@ -135,6 +135,7 @@ class _Builder:
         self.meshes = 0
         self.root = ET.Element("mujoco", model=self.robot.name or "robot")
         ET.SubElement(self.root, "compiler", angle="radian", autolimits="true", inertiafromgeom="auto")
+        ET.SubElement(self.root, "size", memory="128M")  # parts of many convex pieces touch in hundreds of points
         option = ET.SubElement(
             self.root, "option", timestep=_text(physics.time_step), gravity=_text(physics.gravity), cone="elliptic",
             integrator="implicitfast", impratio="10", noslip_iterations="4",

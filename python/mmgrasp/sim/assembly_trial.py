@@ -27,10 +27,13 @@ Points = NDArray[np.float64]
 
 CELL = (0.55, 0.10, 0.12)  # the assembly's origin [m]
 POSTS, APART, POST = (0.40, -0.22), 0.09, 0.10  # first post, next one along x, height [m]
+OVER = 0.02  # a part is carried so far above everything [m]
 SLIM = 0.9  # radius of a post over that of the part's lower end
 HOME = (0.0, 0.0, 1.5708, 0.0, 1.5708, 0.0)
 DEEP, ASIDE, TILTED = 0.0005, 0.0003, np.radians(2)  # a part is in its place within these [m], [rad]
 FORCE = 40.0  # of each finger [N]
+HARD = (0.99, 0.999)  # of contacts, see Physics.impedance
+LEAST_MASS = 0.01  # contacts of lighter parts would give way by millimetres where fingers press with FORCE [kg]
 
 
 @dataclass
@@ -180,7 +183,7 @@ class AssemblyCell:
         for n in self.loose:
             if n not in moving:
                 world.add(n, self.shapes[n], poses[n])
-        physics = Physics(grip_force=FORCE)
+        physics = Physics(grip_force=FORCE, impedance=HARD)
         scene = SimScene(tool.robot, world, parts, gripper=tool.hand, physics=physics)
         try:
             control = Insertion(tool, self._errand(step, grasp), np.array(HOME), physics.time_step, physics.stiffness)
@@ -201,7 +204,9 @@ class AssemblyCell:
         place = _core.pose(CELL) @ grasp.T_active_tool
         shift = (self.waiting(step.active[0]) - self.goal(step.active[0]))[:3, 3]
         before = step.path[-2][:3, 3] if len(step.path) > 1 else np.array([0, 0, 0.05])
-        return Errand(_moved(place, shift), place, _moved(place, before), grasp.opening, grasp.clearance)
+        top = max(slices[-1].high for slices in self.slices.values())
+        height = CELL[2] + top + OVER + place[2, 3] - CELL[2] - self.slices[step.active[0]][0].low
+        return Errand(_moved(place, shift), place, _moved(place, before), grasp.opening, grasp.clearance, float(height))
 
     def _mass(self, name: str) -> float:
         holding = self.assembly.holding
@@ -210,7 +215,7 @@ class AssemblyCell:
             np.pi * (s.high - s.low) * (np.mean(np.square(s.outer)) - np.mean(np.square(s.inner)))
             for s in self.slices[name]
         )
-        return float(density * volume)
+        return max(LEAST_MASS, float(density * volume))
 
 
 def chosen(plan: GripperPlan) -> tuple[list[Gripper], list[AssemblyGrasp]]:

@@ -41,6 +41,8 @@ class Errand:
     """Of the part where it is held [m]."""
     clearance: float
     """By which each finger opens to let go [m]."""
+    height: float
+    """Of the tool while it carries the part over everything else, in the world [m]."""
 
 
 def way_of(arm: JointGroup, poses: list[Points], seed: Points) -> list[Points]:
@@ -75,7 +77,7 @@ class Insertion:
         up = np.eye(4)
         up[2, 3] = CLEAR
         over = up @ errand.pick
-        height = max(over[2, 3], errand.start[2, 3])
+        height = max(over[2, 3], errand.start[2, 3], errand.height)
         lifted, before = over.copy(), errand.start.copy()
         lifted[2, 3] = before[2, 3] = height
         poses = [over, errand.pick, lifted, before, errand.start, errand.place, up @ errand.place]
@@ -103,8 +105,6 @@ class Insertion:
         stretch = {0: (0, FAST / 3), 2: (1, FAST), 3: (2, FAST), 4: (3, FAST), 7: (5, FAST / 3)}
         if self.stage in stretch:
             index, speed = stretch[self.stage]
-            if self.stage == 4 and np.ptp(self.rows[3], axis=0).max() < 1e-6:
-                return self._next(time, self.rows[3][-1], self._shut())
             q, ended = self._along(self.rows[index], spent, speed)
             fingers = self._shut() if self.stage in (2, 3, 4) else self._open() if self.stage == 0 else self._released()
             if self.stage == 7:

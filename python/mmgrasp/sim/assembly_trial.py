@@ -33,6 +33,7 @@ HOME = (0.0, 0.0, 1.5708, 0.0, 1.5708, 0.0)
 DEEP, ASIDE, TILTED = 0.0005, 0.0003, np.radians(2)  # a part is in its place within these [m], [rad]
 FORCE = 40.0  # of each finger [N]
 HARD = (0.99, 0.999)  # of contacts, see Physics.impedance
+STOP = (0.004, 1.0)  # `solref` of the ends of a drive's stroke
 LEAST_MASS = 0.01  # contacts of lighter parts would give way by millimetres where fingers press with FORCE [kg]
 
 
@@ -57,6 +58,7 @@ class OperationOutcome:
     name: str
     gripper: str
     success: bool
+    """The gripper brought the part to its place, let go, and the part is there."""
     deep: float
     """How much higher than its place it is [m]."""
     aside: float
@@ -68,7 +70,7 @@ class OperationOutcome:
     duration: float
     """[s]"""
     why: str = ""
-    """Of an operation that was not tried."""
+    """What went wrong."""
 
 
 @dataclass
@@ -79,6 +81,8 @@ class Film:
     world: World
     parts: list[SimPart]
     states: list[RecordedState]
+    released: float
+    """When the fingers began to open [s]."""
 
 
 class AssemblyCell:
@@ -189,12 +193,15 @@ class AssemblyCell:
             control = Insertion(tool, self._errand(step, grasp), np.array(HOME), physics.time_step, physics.stiffness)
         except RuntimeError as error:
             return OperationOutcome(step.name, gripper.name, False, np.nan, np.nan, np.nan, 0.0, 0.0, str(error))
+        for joint in tool.hand.joints:  # the ends of a drive's stroke are hard
+            stop = scene.model.joint(joint.name).id
+            scene.model.jnt_solref[stop], scene.model.jnt_solimp[stop, :2] = STOP, HARD
         scene.reset(np.zeros(3), control.start_joints())
         recorder = Recorder(self.choice.record)
         duration = scene.drive(control, [recorder] if films is not None else [])
         if films is not None:
             recorder.record(duration, scene)
-            films.append(Film(tool, world, parts, recorder.states))
+            films.append(Film(tool, world, parts, recorder.states, control.released))
         for n in moving:
             poses[n] = scene.part_pose(n)
         goal = _moved(self.goal(name), jig_off)
@@ -237,12 +244,11 @@ def _moved(T: Points, by: Points) -> Points:
     return out
 
 
-def _judged(
-    step: str, gripper: str, at: Points, goal: Points, control: Insertion, duration: float
-) -> OperationOutcome:
+def _judged(step: str, gripper: str, at: Points, goal: Points, control: Insertion, duration: float) -> OperationOutcome:
     deep, aside = float(at[2, 3] - goal[2, 3]), float(np.linalg.norm(at[:2, 3] - goal[:2, 3]))
     tilted = float(np.arccos(np.clip(at[2, 2], -1, 1)))
-    success = abs(deep) < DEEP and aside < ASIDE and tilted < TILTED
-    return OperationOutcome(step, gripper, success, deep, aside, tilted, control.searched, duration)
-
-
+    there = bool(abs(deep) < DEEP and aside < ASIDE and tilted < TILTED)
+    why = "" if control.in_time else "let go before its place" + (", fell into it" if there else "")
+    if not there and not why:
+        why = "not in its place"
+    return OperationOutcome(step, gripper, not why, deep, aside, tilted, control.searched, duration, why)

@@ -151,7 +151,9 @@ def _wedge(part: Slice, k: int, sectors: int) -> Mesh:
 def _frustum(part: Slice, sides: int) -> Mesh:
     angles = 2 * np.pi * np.arange(sides) / sides
     corners = [
-        (r * np.cos(a), r * np.sin(a), z) for z, r in zip((part.low, part.high), part.outer, strict=True) for a in angles
+        (r * np.cos(a), r * np.sin(a), z)
+        for z, r in zip((part.low, part.high), part.outer, strict=True)
+        for a in angles
     ]
     k = np.arange(sides)
     n = (k + 1) % sides

@@ -90,6 +90,8 @@ class Insertion:
         self.blocked = False
         self.offset = np.zeros(2)
         self.searched, self.in_time = 0.0, True
+        self.released = np.inf
+        """When the fingers begin to open [s]."""
         self.before: Points | None = None
 
     def start_joints(self) -> dict[str, float]:
@@ -144,6 +146,7 @@ class Insertion:
         late = spent > PATIENCE
         if self.done >= 1 or late:
             self.in_time = not late
+            self.released = time + SETTLE
             if late:  # back up before letting go would hide the failure: it lets go where it is
                 self.rows[4] = np.array([self._at(self.rows[4], self.done)] * 2)
                 self.rows[5] = np.concatenate([self.rows[4][-1:], self.rows[5]])

@@ -99,7 +99,9 @@ class Physics:
                 raise InvalidInput(f"{name} = {value!r}: must be finite and positive")
         soft, hard = self.impedance
         if not 0 < soft <= hard < 1:
-            raise InvalidInput(f"impedance = {self.impedance!r}: must be two numbers between 0 and 1, the second no smaller")
+            raise InvalidInput(
+                f"impedance = {self.impedance!r}: must be two numbers between 0 and 1, the second no smaller"
+            )
         if self.time_step > 0.01:
             raise InvalidInput(f"time_step = {self.time_step!r}: must be at most 0.01 s, contacts need fine steps")
 
@@ -147,7 +149,9 @@ class _Builder:
         )  # fmt: skip
         ET.SubElement(option, "flag", multiccd="enable")
         default = ET.SubElement(self.root, "default")
-        ET.SubElement(default, "geom", solref="0.006 1", condim="4", density="500", solimp=_text((*physics.impedance, 0.001)))
+        ET.SubElement(
+            default, "geom", solref="0.006 1", condim="4", density="500", solimp=_text((*physics.impedance, 0.001))
+        )
         self.asset = ET.SubElement(self.root, "asset")
         world = ET.SubElement(self.root, "worldbody")
         self._geom(

@@ -16,6 +16,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+
 from mmgrasp._core import Gripper, SegmentRequirement
 from mmgrasp.grippers import load_assembly, plan_grippers
 from mmgrasp.grippers.planning import GripperPlan

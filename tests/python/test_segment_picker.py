@@ -9,6 +9,7 @@ import shutil
 import subprocess
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -44,7 +45,7 @@ def node(script: str) -> str:
     return run.stdout
 
 
-def embedded(page: str) -> list[dict]:
+def embedded(page: str) -> list[dict[str, Any]]:
     found = re.search(r'<script type="application/json" id="picker-data">(.*?)</script>', page, re.DOTALL)
     assert found
     return list(json.loads(found.group(1)))

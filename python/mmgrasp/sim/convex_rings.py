@@ -6,6 +6,7 @@ wedges' inner faces touch the hole's circle from outside: what fits the hole fit
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -42,7 +43,7 @@ def revolution_slices(mesh: Mesh, T_axis_mesh: ArrayLike, widen: float = 0.0) ->
     corners = vertices[np.asarray(mesh.triangles)]
     heights = np.unique(np.round(vertices[:, 2], 6))
     slices: list[Slice] = []
-    for low, high in zip(heights[:-1], heights[1:], strict=True):
+    for low, high in itertools.pairwise(heights):
         if high - low < 4 * LOOK:
             continue
         ends = [_radii(corners, z) for z in (low + LOOK, high - LOOK)]

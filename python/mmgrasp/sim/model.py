@@ -80,6 +80,8 @@ class Physics:
     """Largest torque of the wheels about the vertical [N m]."""
     stiffness: float = 60.0
     """Natural frequency of the arm's joint controllers, critically damped [rad/s]."""
+    impedance: tuple[float, float] = (0.95, 0.99)
+    """How hard contacts are, where bodies begin to touch and 1 mm deep, between 0 and 1 (`solimp`); light parts held firmly need more."""
 
     def check(self) -> None:
         """Raises InvalidInput naming field, value and rule."""
@@ -95,6 +97,11 @@ class Physics:
             value = float(getattr(self, name))
             if not (np.isfinite(value) and value > 0):
                 raise InvalidInput(f"{name} = {value!r}: must be finite and positive")
+        soft, hard = self.impedance
+        if not 0 < soft <= hard < 1:
+            raise InvalidInput(
+                f"impedance = {self.impedance!r}: must be two numbers between 0 and 1, the second no smaller"
+            )
         if self.time_step > 0.01:
             raise InvalidInput(f"time_step = {self.time_step!r}: must be at most 0.01 s, contacts need fine steps")
 
@@ -135,13 +142,16 @@ class _Builder:
         self.meshes = 0
         self.root = ET.Element("mujoco", model=self.robot.name or "robot")
         ET.SubElement(self.root, "compiler", angle="radian", autolimits="true", inertiafromgeom="auto")
+        ET.SubElement(self.root, "size", memory="128M")  # parts of many convex pieces touch in hundreds of points
         option = ET.SubElement(
             self.root, "option", timestep=_text(physics.time_step), gravity=_text(physics.gravity), cone="elliptic",
             integrator="implicitfast", impratio="10", noslip_iterations="4",
         )  # fmt: skip
         ET.SubElement(option, "flag", multiccd="enable")
         default = ET.SubElement(self.root, "default")
-        ET.SubElement(default, "geom", solref="0.006 1", solimp="0.95 0.99 0.001", condim="4", density="500")
+        ET.SubElement(
+            default, "geom", solref="0.006 1", condim="4", density="500", solimp=_text((*physics.impedance, 0.001))
+        )
         self.asset = ET.SubElement(self.root, "asset")
         world = ET.SubElement(self.root, "worldbody")
         self._geom(

@@ -11,6 +11,7 @@ from ..grippers.holding import Held
 from ..grippers.planning import GripperPlan
 from .gripper_pictures import picture_name
 from .report import CSS, plural, table
+from .segment_picker import picker_html
 
 
 def gripper_report_html(plan: GripperPlan, pictures: Path | None) -> str:
@@ -22,6 +23,7 @@ def gripper_report_html(plan: GripperPlan, pictures: Path | None) -> str:
         _grippers(plan),
         _operations(plan, pictures),
         _segments(plan, pictures),
+        picker_html(plan),
     ]
     return (
         '<!doctype html><html lang="en"><head><meta charset="utf-8">'

@@ -1,0 +1,172 @@
+"""The belt drive's shafts put together in MuJoCo by the grippers designed for them, and by grippers that (5.2) refuses.
+
+    python benchmarks/gripper_design/belt_drive.py [--runs 20] [--each 5] [--noise 0.5] [--write]
+
+Runs of the whole order with the designed grippers; runs of the whole order, and of each operation by itself, with fingers that are too short,
+that do not open wide enough, and that do not close far enough. Needs the shared data (see belt_drive.yaml) and MuJoCo. With --write the table
+goes to belt_drive.md and the pictures to docs/images/belt_drive.png. The same seeds give the same runs on one machine.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections import Counter
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from mmgrasp._core import Gripper, SegmentRequirement
+from mmgrasp.grippers import load_assembly, plan_grippers
+from mmgrasp.grippers.planning import GripperPlan
+from mmgrasp.reproduce.grasping_trials import wilson
+from mmgrasp.sim.assembly_trial import AssemblyCell, Film, OperationOutcome, TrialChoice, chosen, other_gripper
+from mmgrasp.sim.pictures import Painter
+from mmgrasp.viz.png import write_png
+from mmgrasp.viz.raster import Camera
+
+HERE = Path(__file__).resolve().parent
+JIG = ["jig", "housing", "motor", "pin"]
+FIT = 0.052e-3  # NIST's 8 mm hole over its tight peg, in radius [m]
+SHORT = 0.010  # fingers [m]
+OFF = 0.001  # by which openings miss the part [m]
+STROKE = 0.016
+
+
+def requirements(plan: GripperPlan) -> list[SegmentRequirement]:
+    """What each operation's segment asks of the gripper."""
+    assert plan.result is not None
+    return [plan.requirements[i] for i in plan.result.requirement_of_part]
+
+
+def refused(plan: GripperPlan) -> dict[str, list[Gripper]]:
+    """Grippers of the same drives, one per operation, that (5.2) refuses: L < L-, W > W+, W < W-."""
+    grippers, _ = chosen(plan)
+    asked = requirements(plan)
+    short = [other_gripper(g, finger_length=SHORT) for g in grippers]
+    narrow, wide = [], []
+    for g, r in zip(grippers, asked, strict=True):
+        top = r.opening - OFF
+        narrow.append(other_gripper(g, max_opening=top, min_opening=max(0.0, top - STROKE)))
+        wide.append(other_gripper(g, min_opening=r.opening + OFF, max_opening=r.opening + OFF + STROKE))
+    return {
+        f"fingers of {1e3 * SHORT:.0f} mm": short,
+        "open 1 mm less than the part": narrow,
+        "close to 1 mm more than the part": wide,
+    }
+
+
+def allowed(gripper: Gripper, asked: SegmentRequirement) -> bool:
+    """P1 (5.2), with <=."""
+    longest = np.inf if asked.max_finger_length is None else asked.max_finger_length
+    fits = gripper.min_opening <= asked.opening <= gripper.max_opening
+    return bool(fits and asked.min_finger_length <= gripper.finger_length <= longest)
+
+
+def rate(good: int, count: int) -> str:
+    """A rate with its 95 % interval."""
+    low, high = wilson(good, count)
+    return f"{good} of {count} ({100 * low:.0f} to {100 * high:.0f} %)"
+
+
+def whole(cell: AssemblyCell, plan: GripperPlan, grippers: list[Gripper], runs: int) -> list[list[OperationOutcome]]:
+    """Runs of the whole order."""
+    return [cell.run(grippers, chosen(plan)[1], seed) for seed in range(runs)]
+
+
+def designed_table(plan: GripperPlan, outcomes: list[list[OperationOutcome]]) -> list[str]:
+    """Rows of the operations with the designed grippers."""
+    lines = [
+        "| operation | gripper | opening [mm] | least fingers [mm] | in its place | went searching | search, median of those [s] |"
+    ]
+    lines.append("|---|---|---|---|---|---|---|")
+    for step, gripper, asked in zip(plan.assembly.steps, chosen(plan)[0], requirements(plan), strict=True):
+        tried = [o for run in outcomes for o in run if o.name == step.name]
+        searched = [o.searched for o in tried if o.searched > 0]
+        median = f"{np.median(searched):.1f}" if searched else "-"
+        lines.append(
+            f"| {step.name} | {gripper.name} | {1e3 * asked.opening:.1f} | {1e3 * asked.min_finger_length:.1f} "
+            f"| {rate(sum(o.success for o in tried), len(tried))} | {len(searched)} | {median} |"
+        )
+    return lines
+
+
+def picture(cell: AssemblyCell, plan: GripperPlan, file: Path) -> None:
+    """Each operation just before its gripper lets go, side by side."""
+    films: list[Film] = []
+    recording = AssemblyCell(cell.assembly, replace(cell.choice, record=0.05))
+    recording.run(*chosen(plan), 1, films)
+    camera = Camera(np.array([1.05, -0.28, 0.52]), np.array([0.60, 0.08, 0.20]), 460, 460, 40.0)
+    tiles = []
+    for film in films:
+        low = min(film.states, key=lambda s: abs(s["time"] - (film.released - 0.1)))
+        tiles.append(Painter(film.tool.robot, film.tool.hand, film.world, film.parts).picture(low, camera))
+    rows = [np.concatenate(tiles[i : i + 3], axis=1) for i in range(0, len(tiles), 3)]
+    write_png(file, np.concatenate(rows, axis=0))
+
+
+def main() -> None:
+    """The command."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--runs", type=int, default=20, help="of the whole order (default 20)")
+    parser.add_argument("--each", type=int, default=5, help="of each operation with refused grippers (default 5)")
+    parser.add_argument("--noise", type=float, default=0.5, help="standard deviation of x and y [mm] (default 0.5)")
+    parser.add_argument("--write", action="store_true", help="store table and pictures")
+    given = parser.parse_args()
+    plan = plan_grippers(load_assembly(HERE / "belt_drive.yaml"))
+    if not plan.solved or plan.result is None:
+        sys.exit("no grippers for the belt drive")
+    cell = AssemblyCell(plan.assembly, TrialChoice(JIG, 1e-3 * given.noise, {"end cap": FIT}))
+    lines = [
+        f"{len(plan.result.grippers)} grippers for {len(plan.assembly.steps)} operations, lower bound {plan.result.lower_bound:g}:",
+        "",
+    ]
+    for g in plan.result.grippers:
+        lines.append(
+            f"- {g.name}: {g.fingers} fingers of {1e3 * g.finger_length:.1f} mm, opens from {1e3 * g.min_opening:.1f} to {1e3 * g.max_opening:.1f} mm"
+        )
+    outcomes = whole(cell, plan, chosen(plan)[0], given.runs)
+    complete = sum(len(run) == len(plan.assembly.steps) and run[-1].success for run in outcomes)
+    lines += [
+        "",
+        f"Whole assemblies, {given.noise:g} mm of noise: {rate(complete, given.runs)}.",
+        "",
+        *designed_table(plan, outcomes),
+    ]
+    for run, seed in zip(outcomes, range(given.runs), strict=True):
+        bad = [o for o in run if not o.success]
+        lines += [
+            f"\nSeed {seed}: {o.name}, {o.why} ({1e3 * o.deep:.1f} mm above it, {1e3 * o.aside:.1f} mm aside)."
+            for o in bad
+        ]
+    lines += [
+        "",
+        "| grippers that (5.2) refuses | whole assemblies | ended at | "
+        + " | ".join(s.name for s in plan.assembly.steps)
+        + " |",
+    ]
+    lines.append("|---" * (3 + len(plan.assembly.steps)) + "|")
+    for name, grippers in refused(plan).items():
+        runs = whole(cell, plan, grippers, given.runs)
+        good = sum(len(run) == len(plan.assembly.steps) and run[-1].success for run in runs)
+        ends = Counter(run[-1].name for run in runs if not run[-1].success)
+        cells = []
+        for k, asked in enumerate(requirements(plan)):
+            tried = [cell.run(grippers, chosen(plan)[1], s, steps=[asked.part])[0] for s in range(given.each)]
+            reasons = Counter(o.why for o in tried if o.why)
+            verdict = "allowed" if allowed(grippers[k], asked) else "refused"
+            why = "".join(f"; {text}: {count}" for text, count in reasons.items())
+            cells.append(f"{verdict}, {sum(o.success for o in tried)} of {len(tried)}{why}")
+        lines.append(
+            f"| {name} | {rate(good, given.runs)} | {', '.join(f'{n}: {c}' for n, c in ends.items())} | {' | '.join(cells)} |"
+        )
+        print(lines[-1], flush=True)
+    print("\n".join(lines))
+    if given.write:
+        (HERE / "belt_drive.md").write_text("\n".join(lines) + "\n")
+        picture(cell, plan, HERE.parents[1] / "docs" / "images" / "belt_drive.png")
+
+
+if __name__ == "__main__":
+    main()

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import mmgrasp as mg
+from mmgrasp import Box
 from mmgrasp.documents.reading import read_yaml
 from mmgrasp.scenario.floor_map import read_floor_map
 
@@ -63,7 +64,7 @@ def test_each_wall_cell_lies_in_one_box_and_no_other_cell(
     shapes = read_floor_map(write_map(tmp_path, scaled, kind, white, unknown))
     solid = image == BLACK if unknown == "free" else image != WHITE
     assert (covered(shapes, 23, 31) == solid).all()
-    assert all(abs(s.pose[2, 3] - 0.75) < 1e-12 and s.shape.size[2] == 1.5 for s in shapes)
+    assert all(abs(s.pose[2, 3] - 0.75) < 1e-12 and isinstance(s.shape, Box) and s.shape.size[2] == 1.5 for s in shapes)
 
 
 def test_origin_turns_and_negate_swaps(tmp_path: Path) -> None:

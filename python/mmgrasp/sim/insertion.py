@@ -38,11 +38,11 @@ class Errand:
     start: Points
     """Tool pose before the last straight motion into place."""
     opening: float
-    """Of the part where it is held [m]."""
+    """Width of the part where it is held [m]."""
     clearance: float
-    """By which each finger opens to let go [m]."""
+    """How far each finger opens to let go [m]."""
     height: float
-    """Of the tool while it carries the part over everything else, in the world [m]."""
+    """Height of the tool while it carries the part over everything else, in the world [m]."""
 
 
 def way_of(arm: JointGroup, poses: list[Points], seed: Points) -> list[Points]:
@@ -100,9 +100,11 @@ class Insertion:
         return dict(zip(self.joints, first, strict=True))
 
     def finished(self, time: float, scene: SceneState) -> bool:
+        """Whether the part was let go and the tool has left it."""
         return self.stage >= 8
 
     def command(self, time: float, scene: SceneState) -> Command:
+        """References of arm and fingers at this time; the insertion looks at where the tool really is."""
         spent = time - self.since
         stretch = {0: (0, FAST / 3), 2: (1, FAST), 3: (2, FAST), 4: (3, FAST), 7: (5, FAST / 3)}
         if self.stage in stretch:

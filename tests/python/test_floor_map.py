@@ -118,6 +118,8 @@ def test_bad_maps_are_refused_at_their_line(tmp_path: Path, changed: dict[str, A
         (b"P5\n6 4\n0\n" + bytes(24), "white in"),
         (b"P6\n6 4\n255\n" + bytes(72), "must be a PGM"),
         (b"", "must be a PGM"),
+        (b"P5" + b" " * 100_000 + b"x", "must be a PGM"),  # an expression that backtracks would not end
+        (b"P5" + b"#\n " * 50_000 + b"6 x", "must be a PGM"),
         (b"P5\n6 4\n255\n" + bytes([WHITE]) * 24, "no occupied cell"),
     ],
 )

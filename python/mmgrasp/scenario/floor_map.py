@@ -16,7 +16,7 @@ KEYS = "map height unknown"
 LARGEST_IMAGE = 100_000_000  # [bytes]
 MOST_CELLS = 25_000_000
 MOST_BOXES = 20_000
-_HEADER = re.compile(rb"(P[25])" + 3 * rb"(?:\s+|#[^\n]*\n)+(\d{1,9})" + rb"\s")
+_HEADER = re.compile(rb"(P[25])" + 3 * rb"(?:\s|#[^\n]*\n)+(\d{1,9})" + rb"\s")
 
 
 def read_floor_map(node: Node) -> list[LinkShape]:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from .. import _core
-from .._core import Box, Hand, HandJoint, InvalidInput, JointGroup, LinkShape, PlaceRegion, Robot
+from .._core import Box, CollisionChecker, Hand, HandJoint, InvalidInput, JointGroup, LinkShape, PlaceRegion, Robot, World
 from .._files import ASSETS, shipped
 from .._progress import Progress
 from ..documents.reading import RENAMED, Node, near_miss, read_yaml
@@ -19,6 +19,7 @@ from .shapes import read_shapes
 BASE_LIMITS = "linear_velocity angular_velocity linear_acceleration angular_acceleration workspace wheel_velocity wheel_separation"
 ROBOT_KEYS = "urdf srdf packages xacro_args base base_limits mount frames group tool_link joints home"
 BIN_LINK = "place_bin"
+_MEET = 1e-4  # fingers nearer than this meet [m]
 
 
 @dataclass
@@ -130,7 +131,7 @@ def read_gripper(source: str) -> Hand:
     path = shipped(source) if source.startswith("asset:") else profile_path(source)
     root = read_yaml(path).root
     sections = choose_sections(root, None) if "trays" in root else _profile_sections(root)
-    robot = _compose(sections.robot)
+    robot = compose(sections.robot)
     _link(robot, sections.robot["tool_link"])
     return _read_gripper(sections.gripper, robot, sections.robot["tool_link"].string())
 
@@ -140,12 +141,13 @@ def read_setup(sections: RobotSections, progress: Progress = None) -> RobotSetup
     node = sections.robot.mapping("urdf group tool_link home", ROBOT_KEYS)
     if sections.place_region is None:
         node.fail("a part-supply round needs a place_region, which this robot's profile does not have")
-    robot = _compose(node)
+    robot = compose(node)
     tool_link = node["tool_link"].string()
     _link(robot, node["tool_link"])
     gripper = _read_gripper(sections.gripper, robot, tool_link)
     robot, bin_pose = _add_bin(robot, sections.place_region)
     robot = _core.with_sampled_pairs(robot, progress=progress)
+    robot = fingers_may_meet(robot, _read_group(robot, node["group"], tool_link), gripper)
 
     other = {name: _joint_value(robot, name, value) for name, value in _named_numbers(node, "joints")}
     closed = gripper.joint_values(0.0)
@@ -176,17 +178,32 @@ def read_arm(root: Node, progress: Progress = None) -> ArmSetup:
     node = root["robot"] if profile is None else profile.robot
     hand = root["gripper"] if profile is None or "gripper" in root else profile.gripper
     node.mapping("urdf group tool_link", ROBOT_KEYS)
-    robot = _compose(node)
+    robot = compose(node)
     tool_link = node["tool_link"].string()
     _link(robot, node["tool_link"])
     gripper = _read_gripper(hand, robot, tool_link)
     robot = _core.with_sampled_pairs(robot, progress=progress)
+    robot = fingers_may_meet(robot, _read_group(robot, node["group"], tool_link), gripper)
     other = {name: _joint_value(robot, name, value) for name, value in _named_numbers(node, "joints")}
     arm = _read_group(robot, node["group"], tool_link).with_reference({**other, **gripper.joint_values(0.0)})
     return ArmSetup(robot, arm, gripper)
 
 
-def _compose(node: Node) -> Robot:
+def fingers_may_meet(robot: Robot, arm: JointGroup, hand: Hand) -> Robot:
+    """The robot whose collision checks leave out pairs of links that the hand's joints move and that touch when it is closed: they are made to."""
+    open_, closed = (robot.link_poses(hand.joint_values(o)) for o in (hand.max_opening, hand.min_opening))
+    in_hand = [[np.linalg.inv(poses[hand.tool_link]) @ poses[link] for link in robot.links] for poses in (open_, closed)]
+    driven = {
+        link for link, a, b in zip(robot.links, *in_hand, strict=True) if np.abs(a - b).max() > 1e-9
+    }
+    checker = CollisionChecker(robot, World(), arm.with_reference(hand.joint_values(hand.min_opening)))
+    near = checker.distances((arm.sample_lower + arm.sample_upper) / 2, _MEET)
+    meeting = [(pair.a, pair.b, "default") for pair in near if {pair.a, pair.b} <= driven]
+    return robot.with_disabled_pairs([*robot.disabled_pairs, *meeting]) if meeting else robot
+
+
+def compose(node: Node) -> Robot:
+    """The robot of a section: its own files, what is mounted on it, and frames."""
     limits = {}
     if "base_limits" in node:
         section = node["base_limits"].mapping("", BASE_LIMITS)

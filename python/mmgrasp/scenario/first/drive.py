@@ -1,0 +1,140 @@
+"""How a robot drives, told from its wheels."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..._core import InvalidInput, LinkShape, Robot
+
+_ON_GROUND = 0.03  # a wheel's lowest point is at most so far above the robot's [m]
+_LEVEL = 0.1  # sine of the largest tilt of an axle
+_PARALLEL = 0.98  # cosine between axles, or joints, that count as parallel
+_SAME_AXLE = 0.05  # wheels nearer than this along the way they roll share an axle [m]
+_OMNI_WORDS = ("mecanum", "omni_wheel", "omniwheel", "omni_base", "swedish")
+
+
+@dataclass(frozen=True)
+class Drive:
+    """How the base moves, and what told so."""
+
+    base: str  # diff_drive or omni
+    reason: str
+    sure: bool
+    wheels: list[str]  # joints
+    separation: float | None  # of the two wheels of a diff_drive [m]
+
+
+def read_drive(robot: Robot, urdf_text: str, base: str | None) -> Drive:
+    """The kind of base, by its wheels or as stated. InvalidInput where neither tells."""
+    wheels = find_wheels(robot)
+    if base is not None:
+        return Drive(base, "as asked for", True, list(wheels), _separation(wheels) if base == "diff_drive" else None)
+    if not wheels:
+        raise InvalidInput(
+            f"{robot.name}: no joint turns a wheel, so that nothing tells how it drives: say --base diff_drive or --base omni, "
+            "or put the arm on a base: init BASE.urdf --mount ARM.urdf=LINK"
+        )
+    word = next((word for word in _OMNI_WORDS if word in urdf_text.lower()), None)
+    axes = np.array([wheel.axis for wheel in wheels.values()])
+    parallel = (np.abs(axes @ axes[0]) > _PARALLEL).all()
+    count = f"{len(wheels)} wheels"
+    if all(wheel.steered for wheel in wheels.values()):
+        return Drive("omni", f"{count}, all of which are steered", True, list(wheels), None)
+    if not parallel:
+        return Drive("omni", f"{count} whose axles are not parallel", True, list(wheels), None)
+    if word is not None:
+        return Drive("omni", f'{count}, and its file says "{word}"', True, list(wheels), None)
+    if _axles(wheels) == 1:
+        return Drive("diff_drive", f"{count} on one axle", True, list(wheels), _separation(wheels))
+    reason = (
+        f"{count} on parallel axles, which may be skid-steered or Mecanum wheels: both can drive so; --base omni if it is so"
+    )
+    return Drive("diff_drive", reason, False, list(wheels), None)
+
+
+@dataclass(frozen=True)
+class _Wheel:
+    axis: np.ndarray  # unit, in the root frame
+    middle: np.ndarray  # of the wheel's frame, in the root frame
+    steered: bool  # hangs on a joint that turns about the vertical
+
+
+def find_wheels(robot: Robot) -> dict[str, _Wheel]:
+    """Joints without an end whose level axles turn links that stand on the ground, as the robot stands when all its joints are 0; castors are left
+    out where other wheels drive."""
+    poses = robot.link_poses()
+    lowest = {link: _lowest(robot, link, pose) for link, pose in poses.items()}
+    ground = min(lowest.values())
+    wheels = {}
+    for joint in robot.joint_table:
+        named = "wheel" in f"{joint['name']} {joint['child']}".lower()
+        endless = joint["type"] == "continuous" or (
+            named and joint["type"] == "revolute" and joint["upper"] - joint["lower"] > 2 * np.pi
+        )
+        if not endless or joint["mimic"] is not None:
+            continue
+        axis = joint_axis(robot, joint["name"], joint["parent"], joint["child"])
+        if abs(axis[2]) < _LEVEL and (named or lowest[joint["child"]] < ground + _ON_GROUND):
+            wheels[joint["name"]] = _Wheel(axis, poses[joint["child"]][:3, 3], _steered(robot, joint["parent"]))
+    straight = {name: wheel for name, wheel in wheels.items() if not wheel.steered}
+    return straight or wheels
+
+
+def joint_axis(robot: Robot, name: str, parent: str, child: str) -> np.ndarray:
+    """Unit axis of a joint that turns, in the root frame at zero."""
+    row = next(joint for joint in robot.joint_table if joint["name"] == name)
+    step = min(0.5, 0.5 * (row["upper"] - row["lower"]))
+    start = min(max(0.0, row["lower"]), row["upper"] - step)
+    before, after = (robot.link_poses({name: value}) for value in (start, start + step))
+    R = before[parent][:3, :3] @ (np.linalg.inv(after[parent]) @ after[child])[:3, :3] @ before[child][:3, :3].T
+    axis = np.array([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]])
+    return np.asarray(axis / max(float(np.linalg.norm(axis)), 1e-12))
+
+
+def _lowest(robot: Robot, link: str, T: np.ndarray) -> float:
+    shapes = robot.collisions(link)
+    return min((float(LinkShape(s.shape, T @ s.pose).bounds[0][2]) for s in shapes), default=float("inf"))
+
+
+def _steered(robot: Robot, link: str) -> bool:
+    """Whether what carries a wheel hangs on a joint that turns about the vertical."""
+    table = {joint["child"]: joint for joint in robot.joint_table}
+    while link in table and table[link]["type"] == "fixed":
+        link = table[link]["parent"]
+    steering = table.get(link)
+    if steering is None or steering["type"] == "prismatic":
+        return False
+    return bool(abs(joint_axis(robot, steering["name"], steering["parent"], steering["child"])[2]) > _PARALLEL)
+
+
+def _axles(wheels: dict[str, _Wheel]) -> int:
+    axis = next(iter(wheels.values())).axis
+    roll = np.cross(axis, [0, 0, 1])
+    along = sorted(float(roll @ wheel.middle) for wheel in wheels.values())
+    return 1 + sum(b - a > _SAME_AXLE for a, b in zip(along, along[1:], strict=False))
+
+
+def _separation(wheels: dict[str, _Wheel]) -> float | None:
+    """Between the two wheels on one axle [m]."""
+    if len(wheels) != 2 or _axles(wheels) != 1:
+        return None
+    first, second = wheels.values()
+    return float(abs(first.axis @ (second.middle - first.middle)))
+
+
+def wheel_speed(robot: Robot, wheels: list[str]) -> float | None:
+    """How fast the slowest wheel's rim runs at its joint's limit [m/s]; None where a wheel has no shape or no limit."""
+    poses, speeds = robot.link_poses(), []
+    for joint in robot.joint_table:
+        if joint["name"] not in wheels:
+            continue
+        shapes = robot.collisions(joint["child"])
+        T = poses[joint["child"]]
+        tops = [LinkShape(s.shape, T @ s.pose).bounds for s in shapes]
+        if not tops or not 0 < joint["velocity"] < 1e3:
+            return None
+        radius = (max(b[1][2] for b in tops) - min(b[0][2] for b in tops)) / 2
+        speeds.append(float(radius * joint["velocity"]))
+    return min(speeds) if speeds else None

@@ -1,0 +1,271 @@
+"""How a robot stands while it drives: its arm folded over the base, and a bin that the arm reaches."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..._core import CollisionChecker, Hand, JointGroup, LinkShape, Outcome, Robot, World, pose
+from ..._progress import Progress
+from .arm import Arm, Tree
+
+_DRAWS = 3000  # configurations drawn at random
+_STEPS = 1500  # attempts to better the best of them
+_SUNK = 0.02  # a robot that reaches lower below its root frame stands on a ground below it [m]
+_MARGIN = 0.01  # bodies that do not belong together keep so far apart [m]
+_STATES = ("tuck", "home", "rest", "stow", "fold", "park", "travel")  # words in names of SRDF states
+_LEAST_NAMED = 4  # joints of the arm that such a state names
+_WORSE = 0.15  # a named state may stick out so much farther than what was found [m]
+BIN_SIZE = np.array([0.24, 0.20, 0.10])
+DROP_HEIGHT = 0.03
+_ABOVE_BIN = 0.08  # the tool frame is tried so far above the bin's top face [m]
+_HEIGHTS = (0.35, 0.5, 0.65, 0.8)  # of its top face above the ground where it hangs beside the base [m]
+_TURNS = 4  # of the hand about the vertical that are tried there
+
+
+@dataclass(frozen=True)
+class Outline:
+    """The box around all that arms and heads do not move, in the root frame [m]; it stands on the ground."""
+
+    low: np.ndarray
+    high: np.ndarray
+
+    def outside(self, points: np.ndarray) -> np.ndarray:
+        """How far points (n, 2) lie outside of it, seen from above [m]."""
+        return np.asarray(np.linalg.norm(np.maximum(np.maximum(self.low[:2] - points, points - self.high[:2]), 0), axis=1))
+
+
+@dataclass
+class Home:
+    """The arm's joints while driving, and those of what else moves on the robot."""
+
+    arm: dict[str, float]
+    others: dict[str, float]
+    reason: str
+    overhang: float  # how far it sticks out of the base's outline [m]
+
+
+def outline_of(robot: Robot, wheels: list[str]) -> Outline:
+    """The box around the links that no joint but a wheel's moves."""
+    tree = Tree(robot)
+    still = [link for link in robot.links if not set(tree.path(link)) - set(wheels)]
+    low, high = np.full(3, np.inf), np.full(3, -np.inf)
+    for link, T in robot.link_poses().items():
+        for shape in robot.collisions(link) if link in still else []:
+            a, b = LinkShape(shape.shape, T @ shape.pose).bounds
+            low, high = np.minimum(low, a), np.maximum(high, b)
+    if not np.isfinite(low).all():
+        low, high = np.full(3, -0.2), np.full(3, 0.2)
+    low[2] = low[2] if low[2] < -_SUNK else 0.0
+    return Outline(low, high)
+
+
+def resting_joints(
+    robot: Robot, arm: Arm, wheels: list[str], group: JointGroup, fingers: dict[str, float]
+) -> dict[str, float]:
+    """Joints of neither arm nor hand: at 0 or as near to it as their limits let, where that makes nothing touch; else in their middle, or at an end."""
+    held: dict[str, float] = {}
+    values: dict[str, list[float]] = {}
+    for joint in robot.joint_table:
+        name = joint["name"]
+        if joint["type"] not in ("revolute", "prismatic", "continuous") or joint["mimic"] is not None:
+            continue
+        if name not in (*arm.joints, *arm.hand_joints, *wheels):
+            low, high = (float(x) if np.isfinite(x) else 0.0 for x in (joint["lower"], joint["upper"]))
+            held[name] = min(max(0.0, low), high)
+            values[name] = [(low + high) / 2, high, low]
+    middle = (group.sample_lower + group.sample_upper) / 2
+
+    def contacts() -> int:
+        return len(CollisionChecker(robot, World(), group.with_reference({**fingers, **held})).contacts(middle))
+
+    least = contacts()
+    for name, others in values.items():
+        for value in others if least else []:
+            before, held[name] = held[name], value
+            if (now := contacts()) < least:
+                least = now
+            else:
+                held[name] = before
+    return held
+
+
+def find_home(
+    robot: Robot, arm: Arm, group: JointGroup, hand: Hand, wheels: list[str], outline: Outline, progress: Progress = None
+) -> Home:
+    """An SRDF state that keeps the arm over the base, else the best configuration found; other arms are folded first.
+
+    Deterministic: drawn with a fixed seed.
+    """
+    tree = Tree(robot)
+    others = resting_joints(robot, arm, wheels, group, hand.joint_values(0.0))
+    for i, end in enumerate(arm.others):
+        if progress is not None:
+            progress("folding the arms", i / (1 + len(arm.others)))
+        chain = [n for n in tree.path(end) if n in others and n not in arm.joints]
+        if not chain:
+            continue
+        other = robot.group(base_link=tree.joints[chain[0]]["parent"], tip=end)
+        fold = _Fold(robot, other.with_reference({**others, **hand.joint_values(0.0)}), outline)
+        q = fold.best()
+        if (named := fold.named(fold.overhang(q) + _WORSE)) is not None:
+            q = named[1]
+        own = {name: float(value) for name, value in zip(other.names, q, strict=True)}
+        others |= {name: own[name] for name in chain}
+    if progress is not None:
+        progress("folding the arms", 1 - 1 / (1 + len(arm.others)))
+    fold = _Fold(robot, group.with_reference({**others, **hand.joint_values(0.0)}), outline)
+    q = fold.best()
+    reason = "found by a search: folded as near to the base as it gets"
+    if (named := fold.named(fold.overhang(q) + _WORSE)) is not None:
+        q, reason = named[1], f'the state "{named[0]}" of its SRDF'
+    if progress is not None:
+        progress("folding the arms", 1.0)
+    home = {name: float(value) for name, value in zip(group.names, q, strict=True)}
+    return Home(home, others, reason, fold.overhang(q))
+
+
+class _Fold:
+    """Searches the configuration of one arm that sticks out of the outline least and touches nothing."""
+
+    def __init__(self, robot: Robot, group: JointGroup, outline: Outline) -> None:
+        self.group = group
+        self.outline = outline
+        self.checker = CollisionChecker(robot, World(), group)
+        still, moved = group.link_poses(self._middle()), group.link_poses(self._middle() + 1e-3)
+        self.balls = [
+            (link, *_ball(shape))
+            for link in robot.links
+            if np.abs(still[link] - moved[link]).max() > 1e-9
+            for shape in robot.collisions(link)
+        ]
+
+    def _middle(self) -> np.ndarray:
+        return np.asarray((self.group.sample_lower + self.group.sample_upper) / 2)
+
+    def overhang(self, q: np.ndarray) -> float:
+        """How far the balls around its shapes stick out of the outline [m]."""
+        return float(max((self._outside(q) + [r for *_, r in self.balls]).max(), 0)) if self.balls else 0.0
+
+    def _outside(self, q: np.ndarray) -> np.ndarray:
+        poses = self.group.link_poses(q)
+        return self.outline.outside(np.array([(poses[link] @ c)[:2] for link, c, _ in self.balls]))
+
+    def cost(self, q: np.ndarray) -> float:
+        """The farthest, and a tenth of the mean, with a fine for each contact and for what comes too near."""
+        if not self.balls:
+            return 0.0
+        out = self._outside(q)
+        cost = float(out.max() + 0.1 * out.mean())
+        contacts = len(self.checker.contacts(q))
+        if contacts:
+            return cost + 10.0 * contacts
+        return cost + 10.0 * max(0.0, _MARGIN - self.checker.distance(q).value)
+
+    def named(self, most: float) -> tuple[str, np.ndarray] | None:
+        """The first SRDF state, by name, that says how this arm is folded, is free and sticks out at most so far [m]; a lift it does not mention stays low."""
+        states = {name: state for of in self.group.robot.group_states.values() for name, state in of.items()}
+        names = self.group.names
+        for name, state in sorted(states.items()):
+            if not any(word in name.lower() for word in _STATES) or len(set(names) & set(state)) < _LEAST_NAMED:
+                continue
+            rest = np.clip(np.zeros(len(names)), self.group.sample_lower, self.group.sample_upper)
+            q = np.array([state.get(joint, value) for joint, value in zip(names, rest, strict=True)])
+            if self.checker.is_free(q) and self.overhang(q) <= most:
+                return name, q
+        return None
+
+    def best(self) -> np.ndarray:
+        """The best of configurations drawn at random, bettered by steps that shrink."""
+        random = np.random.default_rng(1)
+        low, high = self.group.sample_lower, self.group.sample_upper
+        drawn = [self._middle(), np.clip(np.zeros(len(low)), low, high), *random.uniform(low, high, (_DRAWS, len(low)))]
+        free = self.checker.are_free(np.array(drawn))
+        costs = [self.cost(q) for q, ok in zip(drawn, free, strict=True) if ok]
+        kept = [q for q, ok in zip(drawn, free, strict=True) if ok]
+        if not kept:
+            kept = drawn[:300]
+            costs = [self.cost(q) for q in kept]
+        best = int(np.argmin(costs))
+        q, cost = kept[best], costs[best]
+        for i in range(_STEPS):
+            scale = 0.3 * (1 - i / _STEPS) + 0.01
+            trial = np.clip(q + random.normal(0, scale, len(q)) * np.minimum(high - low, 1.0), low, high)
+            if (new := self.cost(trial)) < cost:
+                q, cost = trial, new
+        rounded = np.asarray(np.clip(np.round(q, 3), low, high))
+        return rounded if self.checker.is_free(rounded) else q
+
+
+def _ball(shape: LinkShape) -> tuple[np.ndarray, float]:
+    low, high = LinkShape(shape.shape, shape.pose).bounds
+    return np.append((low + high) / 2, 1.0), float(np.linalg.norm(high - low) / 2)
+
+
+@dataclass
+class Bin:
+    """Where an open bin may be fixed: the middle of its top face in the parent's frame."""
+
+    parent: str
+    xyz: np.ndarray
+    reached: float  # share of the tried hand poses above it that the arm reaches
+
+
+def find_bin(robot: Robot, group: JointGroup, home: np.ndarray, hand: Hand, outline: Outline, progress: Progress = None) -> Bin | None:
+    """The place on the base, or beside it, above which the arm reaches most hand poses that look down; None: nowhere any."""
+    parent = robot.links[0]
+    best: Bin | None = None
+    places = _bin_places(robot, group, home, outline)
+    for i, place in enumerate(places):
+        if progress is not None:
+            progress("looking for a place for the bin", i / len(places))
+        world = World()
+        world.add_box("bin", BIN_SIZE, pose(place - [0, 0, BIN_SIZE[2] / 2]))
+        reached = 0
+        for turn in range(_TURNS):
+            T = looking_down(hand, place + [0, 0, _ABOVE_BIN], 2 * np.pi * turn / _TURNS)
+            reached += group.ik(T, home, world, restarts=8).outcome == Outcome.solved
+        if best is None or reached / _TURNS > best.reached:
+            best = Bin(parent, place, reached / _TURNS)
+        if reached == _TURNS:
+            break
+    return best if best is not None and best.reached > 0 else None
+
+
+def looking_down(hand: Hand, point: np.ndarray, turn: float) -> np.ndarray:
+    """A pose of the tool frame at a point with the approach axis downwards, turned about it [rad]."""
+    axes = np.column_stack([hand.approach, hand.closing, np.cross(hand.approach, hand.closing)])
+    c, s = np.cos(turn), np.sin(turn)
+    wanted = np.column_stack([[0, 0, -1], [c, s, 0], np.cross([0, 0, -1], [c, s, 0])])
+    T = np.eye(4)
+    T[:3, :3] = wanted @ axes.T
+    T[:3, 3] = point
+    return T
+
+
+def _bin_places(robot: Robot, group: JointGroup, home: np.ndarray, outline: Outline) -> list[np.ndarray]:
+    """Middles of the bin's top face where it touches nothing: those that stick out least first, from behind to the front; on the base, or beside it at one of some heights."""
+    poses = group.link_poses(home)
+    boxes = []
+    for link, T in poses.items():
+        for shape in robot.collisions(link):
+            boxes.append(LinkShape(shape.shape, T @ shape.pose).bounds)
+    low, high = outline.low[:2] - BIN_SIZE[:2] / 2 - 0.02, outline.high[:2] + BIN_SIZE[:2] / 2 + 0.02
+    half = BIN_SIZE[:2] / 2 + _MARGIN
+    found = []
+    for x, y in itertools.product(*(np.linspace(a, b, max(2, int(np.ceil((b - a) / 0.06)) + 1)) for a, b in zip(low, high, strict=True))):
+        middle = np.array([x, y])
+        under = [b for b in boxes if (np.abs(middle - np.clip(middle, b[0][:2], b[1][:2])) < half).all()]
+        ground = float(outline.low[2])
+        tops = {round(float(b[1][2]) + BIN_SIZE[2] + _MARGIN, 3) for b in under} | {ground + h for h in _HEIGHTS}
+        sticks = float(outline.outside(np.array([middle + s * BIN_SIZE[:2] / 2 for s in itertools.product((-1, 1), repeat=2)])).max())
+        for top in sorted(tops):
+            bottom = top - BIN_SIZE[2]
+            free = all(b[1][2] <= bottom - 0.5 * _MARGIN or b[0][2] >= top + 0.5 * _MARGIN for b in under)
+            stands = bool(under) and any(b[1][2] <= bottom for b in under)
+            if free and ground + 0.15 <= bottom and top <= ground + 1.2 and (stands or sticks > 0):
+                found.append((round(sticks, 2), top > ground + 0.9, x, abs(y), np.array([x, y, top])))
+    found.sort(key=lambda f: f[:4])
+    return [np.round(f[4], 3) for f in found[:150]]

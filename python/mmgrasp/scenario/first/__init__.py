@@ -234,8 +234,8 @@ def _write(
     tail = {key: rows.pop(key) for key in ("group", "tool_link")}
     rows |= {"base": findings.drive.base, "base_limits": _base_limits(findings)} | tail
     if home.others:
-        rows["joints"] = {k: round(v, 6) + 0.0 for k, v in home.others.items()}
-    rows["home"] = {k: round(v, 6) + 0.0 for k, v in home.arm.items()}
+        rows["joints"] = home.others
+    rows["home"] = home.arm
     arm = findings.arm
     notes = {
         "base": findings.drive.reason,

@@ -16,6 +16,8 @@ _JAW = re.compile(r"grip|finger|jaw|claw|thumb", re.IGNORECASE)
 _FARTHEST = 0.06  # finger tips reach at most so far past a tool frame that lies between the pads [m]
 _TOOL_WORDS = re.compile(r"tcp|tool|grasp|eef|(^|_)ee(_|$)|grip.*(point|cent)", re.IGNORECASE)
 _PAD = 0.02  # a tool frame of ours lies so far behind the finger tips, or half way to the palm [m]
+_AMONG = 0.01  # a tool frame lies at most so far outside of the box around the fingers [m]
+_TOLD = 0.01  # links farther apart along an axis tell which way it points [m]
 TOOL_FRAME = "tool_frame"
 
 
@@ -179,21 +181,37 @@ def find_tool(robot: Robot, arm: Arm, link: str | None) -> Tool | None:
         except InvalidInput as error:
             failures.append(str(error))
             continue
-        if hand.finger_depth / 2 <= _FARTHEST or link is not None:
+        if link is not None or (hand.finger_depth / 2 <= _FARTHEST and _among_fingers(robot, tree, arm, candidate)):
             return Tool(candidate, None, {"from_robot": True}, hand)
     if link is None:
-        for parent, T, approach, closing in _frames_between_tips(robot, tree, arm):
+        for parent, T, approach in _frames_between_tips(robot, tree, arm):
             try:
-                hand = Hand.from_robot(
-                    robot.with_link(TOOL_FRAME, parent, T), TOOL_FRAME, approach=approach, closing=closing
-                )
+                hand = Hand.from_robot(robot.with_link(TOOL_FRAME, parent, T), TOOL_FRAME, approach=approach)
             except InvalidInput as error:
                 failures.append(str(error))
                 continue
             frame = {"name": TOOL_FRAME, "parent": parent, "pose": {"xyz": [round(float(x), 4) for x in T[:3, 3]]}}
-            axes = {"approach": _plain(approach), "closing": _plain(closing)}
-            return Tool(TOOL_FRAME, frame, {"from_robot": True, **axes}, hand)
+            return Tool(TOOL_FRAME, frame, {"from_robot": True, "approach": _plain(approach)}, hand)
     raise InvalidInput(failures[-1] if failures else f"{robot.name}: the fingers at {arm.hand_link} have no shapes")
+
+
+def _among_fingers(robot: Robot, tree: Tree, arm: Arm, link: str) -> bool:
+    """Whether a link's origin lies in the box around the fingers, half closed."""
+    body = tree.body(arm.hand_link)
+    poses = robot.link_poses(_half_closed(tree, arm))
+    low, high = _bounds(robot, poses, body, _finger_links(tree, arm))
+    at = (np.linalg.inv(poses[body]) @ poses[link])[:3, 3]
+    return bool(((at > low - _AMONG) & (at < high + _AMONG)).all())
+
+
+def _half_closed(tree: Tree, arm: Arm) -> dict[str, float]:
+    drives = [n for n in arm.hand_joints if tree.joints[n]["mimic"] is None]
+    half = {n: 0.5 * (tree.joints[n]["lower"] + tree.joints[n]["upper"]) for n in drives}
+    return {n: v if np.isfinite(v) else 0.0 for n, v in half.items()}
+
+
+def _finger_links(tree: Tree, arm: Arm) -> list[str]:
+    return [m for n in arm.hand_joints for m in tree.members(tree.joints[n]["child"])]
 
 
 def flange(robot: Robot, arm: Arm) -> tuple[str, np.ndarray]:
@@ -208,11 +226,12 @@ def flange(robot: Robot, arm: Arm) -> tuple[str, np.ndarray]:
     members = tree.members(body)
     ends = [np.linalg.inv(poses[body]) @ poses[m][:, 3] for m in members]
     low, high = _bounds(robot, poses, body, members)
-    before = np.linalg.inv(poses[body]) @ np.append(poses[last["parent"]][:3, 3], 1.0)
-    middle = (low + high) / 2 if np.isfinite(low).all() else -before[:3]
-    outwards = max((e[:3] for e in ends), key=np.linalg.norm) + middle - 0.01 * before[:3]
-    axis = axis if axis @ outwards >= 0 else -axis
-    corners = np.array(np.meshgrid(*zip(low, high, strict=True))).reshape(3, -1).T if np.isfinite(low).all() else np.zeros((1, 3))
+    before = (np.linalg.inv(poses[body]) @ poses[last["parent"]][:, 3])[:3]
+    solid = np.isfinite(low).all()
+    hints = [-before, max((e[:3] for e in ends), key=np.linalg.norm), (low + high) / 2 if solid else -before]
+    along = next((float(h @ axis) for h in hints if abs(h @ axis) > _TOLD), 1.0)
+    axis = axis if along > 0 else -axis
+    corners = np.array(np.meshgrid(*zip(low, high, strict=True))).reshape(3, -1).T if solid else np.zeros((1, 3))
     reach = max(float((corners @ axis).max()), 0.0, *(float(e[:3] @ axis) for e in ends))
     across = np.eye(3)[int(np.argmin(np.abs(axis)))]
     y = np.cross(axis, across) / np.linalg.norm(np.cross(axis, across))
@@ -226,15 +245,11 @@ def _plain(axis: np.ndarray) -> list[float]:
     return [round(float(x), 9) + 0.0 for x in axis]
 
 
-def _frames_between_tips(robot: Robot, tree: Tree, arm: Arm) -> list[tuple[str, np.ndarray, np.ndarray, np.ndarray]]:
-    """Frames on the hand's body between the finger tips: (parent link, pose in it, approach, closing), likeliest first."""
+def _frames_between_tips(robot: Robot, tree: Tree, arm: Arm) -> list[tuple[str, np.ndarray, np.ndarray]]:
+    """Frames on the hand's body between the finger tips: (parent link, pose in it, approach), likeliest first."""
     body = tree.body(arm.hand_link)
-    drives = [n for n in arm.hand_joints if tree.joints[n]["mimic"] is None]
-    half = {n: 0.5 * (tree.joints[n]["lower"] + tree.joints[n]["upper"]) for n in drives}
-    half = {n: v if np.isfinite(v) else 0.0 for n, v in half.items()}
-    poses = robot.link_poses(half)
-    fingers = [tree.joints[n]["child"] for n in arm.hand_joints]
-    low, high = _bounds(robot, poses, body, [m for f in fingers for m in tree.members(f)])
+    poses = robot.link_poses(_half_closed(tree, arm))
+    low, high = _bounds(robot, poses, body, _finger_links(tree, arm))
     palm_low, palm_high = _bounds(robot, poses, body, tree.members(body))
     if not np.isfinite(low).all():
         return []
@@ -247,11 +262,7 @@ def _frames_between_tips(robot: Robot, tree: Tree, arm: Arm) -> list[tuple[str, 
         length = high[axis] - low[axis]
         at = (low + high) / 2
         at[axis] = tip - approach[axis] * min(_PAD, length / 4)
-        across = [k for k in range(3) if k != axis]
-        for k in sorted(across, key=lambda k: -(high[k] - low[k])):
-            closing = np.zeros(3)
-            closing[k] = 1.0
-            frames.append((body, pose(at), approach, closing))
+        frames.append((body, pose(at), approach))
     return frames
 
 

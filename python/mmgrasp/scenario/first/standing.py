@@ -112,8 +112,7 @@ def find_home(
         q = fold.best()
         if (named := fold.named(fold.overhang(q) + _WORSE)) is not None:
             q = named[1]
-        own = {name: float(value) for name, value in zip(other.names, q, strict=True)}
-        others |= {name: own[name] for name in chain}
+        others |= {name: value for name, value in _named(other, q).items() if name in chain}
     if progress is not None:
         progress("folding the arms", 1 - 1 / (1 + len(arm.others)))
     fold = _Fold(robot, group.with_reference({**others, **hand.joint_values(0.0)}), outline)
@@ -123,8 +122,14 @@ def find_home(
         q, reason = named[1], f'the state "{named[0]}" of its SRDF'
     if progress is not None:
         progress("folding the arms", 1.0)
-    home = {name: float(value) for name, value in zip(group.names, q, strict=True)}
-    return Home(home, others, reason, fold.overhang(q))
+    return Home(_named(group, q), others, reason, fold.overhang(q))
+
+
+def _named(group: JointGroup, q: np.ndarray) -> dict[str, float]:
+    """Values by joint, to four digits where these lie within the limits."""
+    rounded = np.round(q, 4) + 0.0
+    q = np.where((rounded >= group.lower) & (rounded <= group.upper), rounded, q)
+    return {name: float(value) for name, value in zip(group.names, q, strict=True)}
 
 
 class _Fold:
@@ -195,8 +200,7 @@ class _Fold:
             trial = np.clip(q + random.normal(0, scale, len(q)) * np.minimum(high - low, 1.0), low, high)
             if (new := self.cost(trial)) < cost:
                 q, cost = trial, new
-        rounded = np.asarray(np.clip(np.round(q, 3), low, high))
-        return rounded if self.checker.is_free(rounded) else q
+        return q
 
 
 def _ball(shape: LinkShape) -> tuple[np.ndarray, float]:

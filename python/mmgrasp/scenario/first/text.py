@@ -26,7 +26,8 @@ def flow(value: Any) -> str:
 
 
 def _number(value: float) -> str:
-    text = f"{value:.8g}"
+    text = f"{value + 0.0:.8g}"
+    text = text if float(text) == value else repr(value)
     return text if any(c in text for c in ".e") else text + ".0"
 
 

@@ -137,7 +137,9 @@ def _arm_ends(tree: Tree, wheels: list[str]) -> list[str]:
     """The first link of each body at which an arm ends and its hand, if any, begins."""
     ends = []
     for effector in tree.robot.end_effectors:
-        ends.append(tree.body(effector["parent_link"]))
+        body = tree.body(effector["parent_link"])
+        if body not in tree.into or not _JAW.search(f"{tree.into[body]} {body}"):  # else it names a finger
+            ends.append(body)
     leaves = {tree.body(link) for link in tree.robot.links if not tree.below(link)}
     for leaf in sorted(leaves, key=tree.robot.links.index):
         way = [leaf]  # bodies from the leaf to the root
@@ -192,7 +194,10 @@ def find_tool(robot: Robot, arm: Arm, link: str | None) -> Tool | None:
                 continue
             frame = {"name": TOOL_FRAME, "parent": parent, "pose": {"xyz": [round(float(x), 4) for x in T[:3, 3]]}}
             return Tool(TOOL_FRAME, frame, {"from_robot": True, "approach": _plain(approach)}, hand)
-    raise InvalidInput(failures[-1] if failures else f"{robot.name}: the fingers at {arm.hand_link} have no shapes")
+    why = failures[-1] if failures else f"{robot.name}: the fingers at {arm.hand_link} have no shapes"
+    raise InvalidInput(
+        f"{why}. (A first scenario needs a hand that can be measured: another tool frame, by --tool-link, or a URDF without this hand, on which the shipped gripper is put.)"
+    )
 
 
 def _among_fingers(robot: Robot, tree: Tree, arm: Arm, link: str) -> bool:

@@ -196,10 +196,16 @@ def fingers_may_meet(robot: Robot, arm: JointGroup, hand: Hand) -> Robot:
     driven = {
         link for link, a, b in zip(robot.links, *in_hand, strict=True) if np.abs(a - b).max() > 1e-9
     }
-    checker = CollisionChecker(robot, World(), arm.with_reference(hand.joint_values(hand.min_opening)))
-    near = checker.distances((arm.sample_lower + arm.sample_upper) / 2, _MEET)
-    meeting = [(pair.a, pair.b, "default") for pair in near if {pair.a, pair.b} <= driven]
-    return robot.with_disabled_pairs([*robot.disabled_pairs, *meeting]) if meeting else robot
+    pairs = robot.disabled_pairs
+    kept = [(a, b, reason) for a, b, reason in pairs if reason != "never" or not {a, b} <= driven]  # "never" is a guess
+    bare = robot.with_disabled_pairs(kept)
+    group = bare.group(base_link=robot.links[0], tip=arm.tip).with_reference(hand.joint_values(hand.min_opening))
+    near = CollisionChecker(bare, World(), group).distances((group.sample_lower + group.sample_upper) / 2, _MEET)
+    meeting = {(pair.a, pair.b) for pair in near if {pair.a, pair.b} <= driven}
+    if not meeting:
+        return robot
+    others = [(a, b, reason) for a, b, reason in pairs if not {(a, b), (b, a)} & meeting]
+    return robot.with_disabled_pairs([*others, *((a, b, "default") for a, b in sorted(meeting))])
 
 
 def compose(node: Node) -> Robot:

@@ -85,6 +85,19 @@ TEST(BaseRoute, ThroughADoorInAWall) {
   }
 }
 
+TEST(BaseRoute, WhatStandsFarAwayMakesNoCellsCoarser) {
+  for (const double away : {90.0, 1e4, 1e6}) {
+    Room room;
+    room.world.add("wall left", test::box_shape(0.1, 4.0, 1.0), test::at(1.5, 2.5, 0.5));
+    room.world.add("wall right", test::box_shape(0.1, 3.0, 1.0), test::at(1.5, -1.9, 0.5));
+    room.world.add("far away", test::box_shape(1.0, 1.0, 1.0), test::at(away, -away, 0.5));
+    const Eigen::Vector3d from(0, 1.5, 0.3), to(3, 1.5, 1.2);
+    const BasePath path = room.plan(from, to);
+    room.expect_driveable(path, from, to, BaseKind::diff_drive);
+    EXPECT_LT(path.length, 6.0) << away;
+  }
+}
+
 TEST(BaseRoute, OutOfANicheTooTightToTurnIn) {
   Room room;
   for (double y : {-0.30, 0.30})

@@ -84,6 +84,24 @@ void shorten(BaseClearance& clearance, const BaseSearchSettings& settings, Poses
 
 }  // namespace
 
+namespace {
+
+/// The part of a floor around two places that has room for kMaxCells cells of the resolution asked for; the whole of a
+/// floor that has no more.
+Eigen::AlignedBox2d around(const Eigen::AlignedBox2d& floor, const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+                           double resolution) {
+  Eigen::AlignedBox2d box(Eigen::Vector2d(from.head<2>()));
+  box.extend(Eigen::Vector2d(to.head<2>()));
+  const double area = kMaxCells * resolution * resolution, sum = box.sizes().sum();
+  const double left = area - box.volume();
+  if (floor.volume() <= area || !(left > 0)) return floor;
+  const double margin = (std::sqrt(sum * sum + 4 * left) - sum) / 4;
+  return Eigen::AlignedBox2d(Eigen::Vector2d(box.min().array() - margin), Eigen::Vector2d(box.max().array() + margin))
+      .intersection(floor);
+}
+
+}  // namespace
+
 void BaseRouteOptions::check() const {
   require(std::isfinite(resolution) && resolution > 0, "route.resolution", resolution, "must be positive and finite");
   require(std::isfinite(check_step) && check_step > 0, "route.check_step", check_step, "must be positive and finite");
@@ -107,14 +125,21 @@ BasePath plan_base_route(CollisionChecker& checker, const Eigen::VectorXd& home,
     return path;
   }
   const BaseLimits limits = driving_limits(options.base, checker.group().robot().base_limits());
-  const Eigen::AlignedBox2d bounds =
-      options.bounds.isEmpty() ? detail::floor_bounds(checker.world(), {from, to}) : options.bounds;
-  const Eigen::Vector2d size = bounds.sizes();
-  const double resolution = std::max(options.resolution, std::sqrt(size.x() * size.y() / kMaxCells));
-  const BaseSearchSettings settings{options.base, resolution, limits.linear_velocity / limits.angular_velocity, bounds};
+  const double workspace = checker.group().robot().base_limits().workspace;
+  const Eigen::AlignedBox2d floor =
+      options.bounds.isEmpty() ? detail::floor_bounds(checker.world(), {from, to}, workspace) : options.bounds;
+  const auto settings_on = [&](const Eigen::AlignedBox2d& bounds) {
+    const double resolution = std::max(options.resolution, std::sqrt(bounds.volume() / kMaxCells));
+    return BaseSearchSettings{options.base, resolution, limits.linear_velocity / limits.angular_velocity, bounds};
+  };
+  const BaseSearchSettings settings = settings_on(around(floor, from, to, options.resolution));
   Poses3 poses = {from};
   if (!same) {
     auto found = detail::search_base_path(clearance, from, to, settings, monitor);
+    const bool whole = settings.bounds.isApprox(floor);
+    if (found.outcome == Outcome::not_found &&
+        !whole)  // a way that leads far around, in cells as large as they must be
+      found = detail::search_base_path(clearance, from, to, settings_on(floor), monitor);
     if (found.outcome != Outcome::solved) {
       path.outcome = found.outcome;
       return path;

@@ -24,7 +24,7 @@ constexpr std::array<std::array<int, 2>, 8> kAxes = {
 
 }  // namespace
 
-Eigen::AlignedBox2d floor_bounds(const World& world, const std::vector<Eigen::Vector3d>& poses) {
+Eigen::AlignedBox2d floor_bounds(const World& world, const std::vector<Eigen::Vector3d>& poses, double workspace) {
   Eigen::AlignedBox2d bounds;
   for (const Eigen::Vector3d& pose : poses) bounds.extend(Eigen::Vector2d(pose.head<2>()));
   for (const auto& [name, object] : world.objects()) {
@@ -42,13 +42,15 @@ Eigen::AlignedBox2d floor_bounds(const World& world, const std::vector<Eigen::Ve
     bounds.extend(Eigen::Vector2d(box.min().head<2>()));
     bounds.extend(Eigen::Vector2d(box.max().head<2>()));
   }
-  return {Eigen::Vector2d(bounds.min().array() - kMargin), Eigen::Vector2d(bounds.max().array() + kMargin)};
+  bounds = {Eigen::Vector2d(bounds.min().array() - kMargin), Eigen::Vector2d(bounds.max().array() + kMargin)};
+  const double edge = workspace + kMargin;
+  return bounds.intersection(Eigen::AlignedBox2d(Eigen::Vector2d(-edge, -edge), Eigen::Vector2d(edge, edge)));
 }
 
 FloorField::FloorField(const CollisionChecker& checker, const Eigen::VectorXd& home, BaseKind base,
                        const std::vector<Eigen::Vector3d>& places, double resolution, int threads,
                        const Monitor& monitor)
-    : bounds_(floor_bounds(checker.world(), places)) {
+    : bounds_(floor_bounds(checker.world(), places, checker.group().robot().base_limits().workspace)) {
   const Eigen::Vector2d size = bounds_.sizes();
   resolution_ = std::max(resolution, std::sqrt(size.x() * size.y() / kMaxCells));
   nx_ = static_cast<int>(std::ceil(size.x() / resolution_));

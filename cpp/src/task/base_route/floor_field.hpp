@@ -9,8 +9,9 @@
 
 namespace mmgrasp::detail {
 
-/// Floor plan of everything with an end in the scene and of some base poses, grown by 2 m.
-Eigen::AlignedBox2d floor_bounds(const World& world, const std::vector<Eigen::Vector3d>& poses);
+/// Floor plan of everything with an end in the scene and of some base poses, grown by 2 m; nothing of it lies outside
+/// of the square of the base's workspace [m], whatever stands there.
+Eigen::AlignedBox2d floor_bounds(const World& world, const std::vector<Eigen::Vector3d>& poses, double workspace);
 
 /// Lengths of the drives from one base pose to any other, around obstacles: one search of the whole floor for each pose
 /// instead of one for each pair. A cell can be driven through in a direction when the robot at home is

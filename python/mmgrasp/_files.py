@@ -55,6 +55,15 @@ def check_file(path: Path) -> None:
     check_folder(_target(path).parent)
 
 
+def refuse_own_input(path: Path, source: Path) -> None:
+    """Raises IoError where what is to be written would replace the file that it is made from."""
+    with contextlib.suppress(OSError):
+        if path.exists() and os.path.samefile(path, source):
+            raise IoError(
+                f"{printable(os.fspath(path))}: is the file that was read, and is not replaced: give another name"
+            )
+
+
 @contextlib.contextmanager
 def temporary_room(folder: Path) -> Iterator[None]:
     """Within the block temporary files may be made: in the folder where no place for them can be written. (Drawing needs one.)"""

@@ -55,7 +55,7 @@ def wrong(action: argparse.Action) -> list[str]:
         ["", "x", "=", "=x", "a=/no/such"]
         if kind == "_package"
         else ["", "x", "="]
-        if kind == "_xacro_argument"
+        if kind in ("_xacro_argument", "_mount")
         else NO_NUMBERS
     )
 

@@ -33,6 +33,7 @@ def build_parser() -> argparse.ArgumentParser:
         _add_verify,
         _add_arrive,
         _add_check,
+        _add_init,
         _add_scan,
         _add_grasp,
         _add_pipe,
@@ -99,6 +100,55 @@ def _add_arrive(commands: Commands) -> None:
     parser.add_argument("--robot", type=_source, metavar="NAME", help="the robot profile the plan was made with")
     parser.add_argument("-o", "--out", type=_path, metavar="DIR", help="write arrival.json and the trajectories there")
     parser.add_argument("--json", action="store_true", help="print arrival.json")
+
+
+def _add_init(commands: Commands) -> None:
+    parser = commands.add_parser("init", help="write a first scenario for a robot, with comments")
+    parser.add_argument("urdf", type=_source, help="a URDF, or a .xacro file that expands to one")
+    parser.add_argument(
+        "map", type=_path, nargs="?", help="map.yaml of map_server or SLAM: the counter is put where it is free"
+    )
+    parser.add_argument(
+        "-o",
+        "--out",
+        type=_path,
+        default=Path("scenario.yaml"),
+        metavar="FILE",
+        help="where it is written (default scenario.yaml); no file is replaced",
+    )
+    parser.add_argument("--srdf", type=_path, metavar="FILE", help="default: one of the URDF's name beside it, if any")
+    parser.add_argument(
+        "--xacro-arg",
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        type=_xacro_argument,
+        help="an argument of the xacro file; may be repeated",
+    )
+    parser.add_argument(
+        "--package",
+        action="append",
+        default=[],
+        metavar="NAME=DIR",
+        type=_package,
+        help="where package://NAME/... lies; may be repeated",
+    )
+    parser.add_argument(
+        "--mount",
+        action="append",
+        default=[],
+        metavar="FILE=LINK",
+        type=_mount,
+        help="another robot on a link of this one: an arm on a base, a gripper on an arm; may be repeated",
+    )
+    parser.add_argument("--base", choices=["diff_drive", "omni"], help="default: told from the wheels")
+    parser.add_argument("--group", type=_name, metavar="NAME", help="SRDF group of the arm (default: the longest arm)")
+    parser.add_argument(
+        "--tool-link",
+        type=_name,
+        metavar="LINK",
+        help="the tool frame (default: found, or made between the finger tips)",
+    )
 
 
 def _add_check(commands: Commands) -> None:
@@ -396,6 +446,14 @@ def _package(text: str) -> tuple[str, str]:
     if not Path(folder).is_dir():
         raise argparse.ArgumentTypeError(f"{folder!r} is no folder")
     return name, folder
+
+
+def _mount(text: str) -> tuple[str, str]:
+    """File of a robot and the link it is put on."""
+    name, found, link = text.rpartition("=")
+    if not found or not name or not link or not text.isprintable():
+        raise argparse.ArgumentTypeError(f"{text!r:.80} is not FILE=LINK")
+    return name, link
 
 
 def _xacro_argument(text: str) -> tuple[str, str]:

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Console
 
 from .._core import Error, InvalidInput, Outcome
-from .._files import check_file, check_folder, printable, temporary_room, write_file
+from .._files import check_file, check_folder, printable, refuse_own_input, temporary_room, write_file
 from ..documents.reading import Document
 from ..part_supply import (
     ScenarioPlan,
@@ -39,6 +39,7 @@ from .console import CommandConsole, Reporter, leave_streams, open_streams
 from .exit_codes import BAD_INPUT, DONE, FAULTY, INTERRUPTED, exit_code
 from .grasp import run_grasp
 from .grippers import run_grippers
+from .init import run_init
 from .output_folder import OutputFolder
 from .pipe import run_pipe
 from .scan import run_scan
@@ -124,6 +125,7 @@ def run_check(arguments: argparse.Namespace, console: Console) -> int:
     """`mmgrasp check`: looks at a robot; the exit code."""
     if arguments.write_srdf is not None:
         check_file(arguments.write_srdf)
+        refuse_own_input(arguments.write_srdf, arguments.urdf)
     with Reporter(console) as report:
         found = check_robot(
             arguments.urdf,
@@ -149,6 +151,7 @@ def run_view(arguments: argparse.Namespace, console: Console) -> int:
         plan_to_check(root)
     if arguments.png is not None:
         check_file(arguments.png)
+        refuse_own_input(arguments.png, arguments.plan)
         from ..viz.viewer import write_png
 
         with temporary_room(Path(os.path.realpath(arguments.png)).parent):
@@ -234,6 +237,7 @@ COMMANDS = {
     "plan": run_plan,
     "verify": run_verify,
     "check": run_check,
+    "init": run_init,
     "scan": run_scan,
     "grasp": run_grasp,
     "pipe": run_pipe,

@@ -10,7 +10,18 @@ from typing import Any
 import numpy as np
 
 from .. import _core
-from .._core import Box, CollisionChecker, Hand, HandJoint, InvalidInput, JointGroup, LinkShape, PlaceRegion, Robot, World
+from .._core import (
+    Box,
+    CollisionChecker,
+    Hand,
+    HandJoint,
+    InvalidInput,
+    JointGroup,
+    LinkShape,
+    PlaceRegion,
+    Robot,
+    World,
+)
 from .._files import ASSETS, shipped
 from .._progress import Progress
 from ..documents.reading import RENAMED, Node, near_miss, read_yaml
@@ -192,10 +203,10 @@ def read_arm(root: Node, progress: Progress = None) -> ArmSetup:
 def fingers_may_meet(robot: Robot, arm: JointGroup, hand: Hand) -> Robot:
     """The robot whose collision checks leave out pairs of links that the hand's joints move and that touch when it is closed: they are made to."""
     open_, closed = (robot.link_poses(hand.joint_values(o)) for o in (hand.max_opening, hand.min_opening))
-    in_hand = [[np.linalg.inv(poses[hand.tool_link]) @ poses[link] for link in robot.links] for poses in (open_, closed)]
-    driven = {
-        link for link, a, b in zip(robot.links, *in_hand, strict=True) if np.abs(a - b).max() > 1e-9
-    }
+    in_hand = [
+        [np.linalg.inv(poses[hand.tool_link]) @ poses[link] for link in robot.links] for poses in (open_, closed)
+    ]
+    driven = {link for link, a, b in zip(robot.links, *in_hand, strict=True) if np.abs(a - b).max() > 1e-9}
     pairs = robot.disabled_pairs
     kept = [(a, b, reason) for a, b, reason in pairs if reason != "never" or not {a, b} <= driven]  # "never" is a guess
     bare = robot.with_disabled_pairs(kept)

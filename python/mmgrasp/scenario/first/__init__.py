@@ -92,7 +92,12 @@ def first_scenario(
             "no place for a bin was found that the hand reaches from above: put one where it does (place_region)"
         )
         place = Bin(robot.links[0], np.array([outline.low[0] - BIN_SIZE[0], 0.0, outline.low[2] + 0.5]), 0.0)
-    robot = robot.with_link("place_bin", place.parent, _core.pose(place.xyz), [LinkShape(_core.Box(BIN_SIZE), _core.pose([0, 0, -BIN_SIZE[2] / 2]))])
+    robot = robot.with_link(
+        "place_bin",
+        place.parent,
+        _core.pose(place.xyz),
+        [LinkShape(_core.Box(BIN_SIZE), _core.pose([0, 0, -BIN_SIZE[2] / 2]))],
+    )
     joints = robot.group(base_link=arm.base_link, tip=tool.link)
     joints = joints.with_reference({**home.others, **tool.hand.joint_values(0.0)})
     part = fitting_part(tool.hand)
@@ -139,13 +144,20 @@ def _read_robot(
     if tool is None:
         link, T = flange(robot, arm)
         xyz, rpy = _core.pose_to_xyz_rpy(T)
-        row = {"urdf": GRIPPER, "parent_link": link, "pose": {"xyz": _rounded(xyz), "rpy": _rounded(rpy)}, "prefix": "gripper_"}
+        row = {
+            "urdf": GRIPPER,
+            "parent_link": link,
+            "pose": {"xyz": _rounded(xyz), "rpy": _rounded(rpy)},
+            "prefix": "gripper_",
+        }
         rows["mount"].append(row)
         robot = _composed(rows, folder)
         end = link
         arm = find_arm(robot, drive.wheels, None, end)
         tool = find_tool(robot, arm, None)
-        doubts.append(f"no fingers were found: the shipped parallel gripper is mounted on {link}, where the last joint's axis leaves it; put your own there")
+        doubts.append(
+            f"no fingers were found: the shipped parallel gripper is mounted on {link}, where the last joint's axis leaves it; put your own there"
+        )
     if tool is None:
         raise InvalidInput(f"{robot.name}: no fingers were found at {arm.hand_link}")
     if not rows["mount"]:
@@ -246,9 +258,20 @@ def _write(
         "home": home.reason,
     }
     lines += section("robot", rows, notes) + [""]
-    lines += section("gripper", findings.tool.gripper, {"from_robot": f"measured: opens {findings.tool.hand.max_opening * 1000:.0f} mm"}) + [""]
-    lines.append(f"# An open bin, reached by the hand from above in {place.reached:.0%} of the tried poses. The pose is the middle of its top face.")
-    bin_row = {"parent": place.parent, "pose": {"xyz": _rounded(place.xyz, 3)}, "size": _rounded(BIN_SIZE, 3), "drop_height": DROP_HEIGHT}
+    lines += section(
+        "gripper",
+        findings.tool.gripper,
+        {"from_robot": f"measured: opens {findings.tool.hand.max_opening * 1000:.0f} mm"},
+    ) + [""]
+    lines.append(
+        f"# An open bin, reached by the hand from above in {place.reached:.0%} of the tried poses. The pose is the middle of its top face."
+    )
+    bin_row = {
+        "parent": place.parent,
+        "pose": {"xyz": _rounded(place.xyz, 3)},
+        "size": _rounded(BIN_SIZE, 3),
+        "drop_height": DROP_HEIGHT,
+    }
     lines += [f"place_region: {flow(bin_row)}", ""]
     lines += [f"start: {flow(_rounded(start, 3))}  # x, y, heading of the base", f"goal: {flow(_rounded(goal, 3))}"]
     lines += ["positioning_uncertainty: 0.03  # how far beside a stop the base may come to stand [m]"]
@@ -263,7 +286,14 @@ def _write(
         "box": [float(COUNTER[0]), float(COUNTER[1]), height],
         "pose": {"xyz": _rounded([c[0], c[1], ground + height / 2]), "rpy": [0.0, 0.0, round(float(c[2]), 6)]},
     }
-    lines += [f"  - {flow(counter_row)}", "", "part_types:", f"  block: {flow({'box': _rounded(part, 3)})}", "", "trays:"]
+    lines += [
+        f"  - {flow(counter_row)}",
+        "",
+        "part_types:",
+        f"  block: {flow({'box': _rounded(part, 3)})}",
+        "",
+        "trays:",
+    ]
     for letter, pose in zip("AB", tray_poses(counter, ground + height), strict=True):
         xyz = _rounded(pose[:3])
         lines += [

@@ -161,7 +161,9 @@ def _carries_fingers(tree: Tree, link: str) -> bool:
 def _arm_of_group(tree: Tree, name: str) -> Arm:
     robot = tree.robot
     if name not in robot.groups:
-        raise InvalidInput(f"group = {name!r}: the SRDF has no such group{near_miss(name, list(robot.groups) or ['(none)'])}")
+        raise InvalidInput(
+            f"group = {name!r}: the SRDF has no such group{near_miss(name, list(robot.groups) or ['(none)'])}"
+        )
     described = robot.groups[name]
     if not described["tip_link"]:
         raise InvalidInput(f"group = {name!r}: must be a chain")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -48,9 +49,7 @@ def read_drive(robot: Robot, urdf_text: str, base: str | None) -> Drive:
         return Drive("omni", f'{count}, and its file says "{word}"', True, list(wheels), None)
     if _axles(wheels) == 1:
         return Drive("diff_drive", f"{count} on one axle", True, list(wheels), _separation(wheels))
-    reason = (
-        f"{count} on parallel axles, which may be skid-steered or Mecanum wheels: both can drive so; --base omni if it is so"
-    )
+    reason = f"{count} on parallel axles, which may be skid-steered or Mecanum wheels: both can drive so; --base omni if it is so"
     return Drive("diff_drive", reason, False, list(wheels), None)
 
 
@@ -113,7 +112,7 @@ def _axles(wheels: dict[str, _Wheel]) -> int:
     axis = next(iter(wheels.values())).axis
     roll = np.cross(axis, [0, 0, 1])
     along = sorted(float(roll @ wheel.middle) for wheel in wheels.values())
-    return 1 + sum(b - a > _SAME_AXLE for a, b in zip(along, along[1:], strict=False))
+    return 1 + sum(b - a > _SAME_AXLE for a, b in itertools.pairwise(along))
 
 
 def _separation(wheels: dict[str, _Wheel]) -> float | None:

@@ -54,7 +54,9 @@ def fitting_part(hand: Hand) -> Part:
     return Part(np.array([width, round(1.4 * width, 3), max(0.06, round(1.2 * width, 3))]))
 
 
-def counter_height(group: JointGroup, hand: Hand, home: np.ndarray, outline: Outline, part: Part, progress: Progress = None) -> tuple[float, float]:
+def counter_height(
+    group: JointGroup, hand: Hand, home: np.ndarray, outline: Outline, part: Part, progress: Progress = None
+) -> tuple[float, float]:
     """Height of the counter [m], and the share of grasps from above of a tray's corners and middle that the arm reaches there from the best place of the base.
 
     The first of the usual heights where that share is enough, else the best.
@@ -85,7 +87,9 @@ def _reached(group: JointGroup, hand: Hand, home: np.ndarray, outline: Outline, 
             found = tried = 0
             for x in (-0.08, 0.08):
                 for y in (-0.12, 0.0, 0.12):
-                    point = np.array([front + _EDGE + TRAY[0] / 2 + x, aside + y, ground + height + 0.006 + part.size[2] * 0.75])
+                    point = np.array(
+                        [front + _EDGE + TRAY[0] / 2 + x, aside + y, ground + height + 0.006 + part.size[2] * 0.75]
+                    )
                     good = 0
                     for turn in range(_TURNS):
                         T = looking_down(hand, point, 2 * np.pi * turn / _TURNS)
@@ -108,7 +112,9 @@ def place_room(outline: Outline, walls: list[LinkShape] | None) -> tuple[np.ndar
     return _place_on_map(reach, outline, walls)
 
 
-def _place_on_map(reach: float, outline: Outline, walls: list[LinkShape]) -> tuple[np.ndarray, np.ndarray, np.ndarray, list[str]]:
+def _place_on_map(
+    reach: float, outline: Outline, walls: list[LinkShape]
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, list[str]]:
     grid = _Grid(walls)
     free = grid.free(reach + _ROOM)
     if not free.any():
@@ -136,7 +142,12 @@ def _place_on_map(reach: float, outline: Outline, walls: list[LinkShape]) -> tup
     left = largest & ~grid.near_rectangle(counter, COUNTER + 2 * (reach + _ROOM))
     left = grid.piece_of(left, before) if left.any() else left
     if not left.any():
-        return counter, np.array([*before, heading]), np.array([*before, heading]), ["start and goal are one: the map has no second free place"]
+        return (
+            counter,
+            np.array([*before, heading]),
+            np.array([*before, heading]),
+            ["start and goal are one: the map has no second free place"],
+        )
     cells = grid.middles(left)
     far = np.linalg.norm(cells - before, axis=1)
     start, goal = cells[np.argmin(np.abs(far - 2.0))], cells[np.argmin(np.abs(far - 3.0))]

@@ -34,7 +34,9 @@ class Outline:
 
     def outside(self, points: np.ndarray) -> np.ndarray:
         """How far points (n, 2) lie outside of it, seen from above [m]."""
-        return np.asarray(np.linalg.norm(np.maximum(np.maximum(self.low[:2] - points, points - self.high[:2]), 0), axis=1))
+        return np.asarray(
+            np.linalg.norm(np.maximum(np.maximum(self.low[:2] - points, points - self.high[:2]), 0), axis=1)
+        )
 
 
 @dataclass
@@ -93,7 +95,13 @@ def resting_joints(
 
 
 def find_home(
-    robot: Robot, arm: Arm, group: JointGroup, hand: Hand, wheels: list[str], outline: Outline, progress: Progress = None
+    robot: Robot,
+    arm: Arm,
+    group: JointGroup,
+    hand: Hand,
+    wheels: list[str],
+    outline: Outline,
+    progress: Progress = None,
 ) -> Home:
     """An SRDF state that keeps the arm over the base, else the best configuration found; other arms are folded first.
 
@@ -217,7 +225,9 @@ class Bin:
     reached: float  # share of the tried hand poses above it that the arm reaches
 
 
-def find_bin(robot: Robot, group: JointGroup, home: np.ndarray, hand: Hand, outline: Outline, progress: Progress = None) -> Bin | None:
+def find_bin(
+    robot: Robot, group: JointGroup, home: np.ndarray, hand: Hand, outline: Outline, progress: Progress = None
+) -> Bin | None:
     """The place on the base, or beside it, above which the arm reaches most hand poses that look down; None: nowhere any."""
     parent = robot.links[0]
     best: Bin | None = None
@@ -259,12 +269,18 @@ def _bin_places(robot: Robot, group: JointGroup, home: np.ndarray, outline: Outl
     low, high = outline.low[:2] - BIN_SIZE[:2] / 2 - 0.02, outline.high[:2] + BIN_SIZE[:2] / 2 + 0.02
     half = BIN_SIZE[:2] / 2 + _MARGIN
     found = []
-    for x, y in itertools.product(*(np.linspace(a, b, max(2, int(np.ceil((b - a) / 0.06)) + 1)) for a, b in zip(low, high, strict=True))):
+    for x, y in itertools.product(
+        *(np.linspace(a, b, max(2, int(np.ceil((b - a) / 0.06)) + 1)) for a, b in zip(low, high, strict=True))
+    ):
         middle = np.array([x, y])
         under = [b for b in boxes if (np.abs(middle - np.clip(middle, b[0][:2], b[1][:2])) < half).all()]
         ground = float(outline.low[2])
         tops = {round(float(b[1][2]) + BIN_SIZE[2] + _MARGIN, 3) for b in under} | {ground + h for h in _HEIGHTS}
-        sticks = float(outline.outside(np.array([middle + s * BIN_SIZE[:2] / 2 for s in itertools.product((-1, 1), repeat=2)])).max())
+        sticks = float(
+            outline.outside(
+                np.array([middle + s * BIN_SIZE[:2] / 2 for s in itertools.product((-1, 1), repeat=2)])
+            ).max()
+        )
         for top in sorted(tops):
             bottom = top - BIN_SIZE[2]
             free = all(b[1][2] <= bottom - 0.5 * _MARGIN or b[0][2] >= top + 0.5 * _MARGIN for b in under)

@@ -31,6 +31,17 @@ void raise(PyObject* type, const std::exception& error) {
   if (message) PyErr_SetObject(type, message.ptr());
 }
 
+/// A value whose kind fits but that the conversion itself refused: a whole number beyond 64 bits, an array of one where
+/// a number is asked for. pybind11 tells the type in Python and nothing of the argument.
+InvalidInput unfit_value(const std::string& told) {
+  const std::string begin = "type ", end = " to C++";
+  const std::size_t from = told.find(begin), to = told.find(end);
+  const bool named = from != std::string::npos && to != std::string::npos && from + begin.size() < to;
+  const std::string type = named ? told.substr(from + begin.size(), to - from - begin.size()) : "another type";
+  return InvalidInput("an argument of " + type +
+                      ": its value cannot be taken: a number that is too large, or an object that is no single number");
+}
+
 void bind_errors(py::module_& m) {
   error_types.error =
       new_error(m, "Error", py::make_tuple(py::handle(PyExc_Exception)), "Base of all errors of mmgrasp.");
@@ -49,6 +60,8 @@ void bind_errors(py::module_& m) {
       raise(error_types.io_error, e);
     } catch (const Error& e) {
       raise(error_types.error, e);
+    } catch (const py::cast_error& e) {
+      raise(error_types.invalid_input, unfit_value(e.what()));
     }
   });
 }

@@ -30,6 +30,7 @@ from .shapes import read_shapes
 BASE_LIMITS = "linear_velocity angular_velocity linear_acceleration angular_acceleration workspace wheel_velocity wheel_separation"
 ROBOT_KEYS = "urdf srdf packages xacro_args base base_limits mount frames group tool_link joints home"
 BIN_LINK = "place_bin"
+SLOWEST = 1e-3  # of a base [m/s, rad/s and their rates]: a round that takes days has more samples than memory
 _MEET = 1e-4  # fingers nearer than this meet [m]
 
 
@@ -224,7 +225,11 @@ def compose(node: Node) -> Robot:
     limits = {}
     if "base_limits" in node:
         section = node["base_limits"].mapping("", BASE_LIMITS)
-        limits = {key: value.number(above=0) for key, value in section.items()}
+        slow = {key for key in BASE_LIMITS.split() if key.endswith(("velocity", "acceleration"))}
+        limits = {
+            key: value.number(least=SLOWEST) if key in slow else value.number(above=0)
+            for key, value in section.items()
+        }
     base = node["base"].choice("fixed", "diff_drive", "omni") if "base" in node else "fixed"
     robot = _load(node, base, limits)
     for mount in node["mount"].elements() if "mount" in node else []:

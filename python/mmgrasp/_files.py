@@ -57,11 +57,14 @@ def check_file(path: Path) -> None:
 
 def refuse_own_input(path: Path, source: Path) -> None:
     """Raises IoError where what is to be written would replace the file that it is made from."""
-    with contextlib.suppress(OSError):
-        if path.exists() and os.path.samefile(path, source):
-            raise IoError(
-                f"{printable(os.fspath(path))}: is the file that was read, and is not replaced: give another name"
-            )
+    try:
+        same = os.path.samefile(path, source)
+    except OSError:  # one of them is not there
+        same = False
+    if same:
+        raise IoError(
+            f"{printable(os.fspath(path))}: is the file that was read, and is not replaced: give another name"
+        )
 
 
 @contextlib.contextmanager

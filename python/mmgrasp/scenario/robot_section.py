@@ -12,7 +12,6 @@ import numpy as np
 from .. import _core
 from .._core import (
     Box,
-    CollisionChecker,
     Hand,
     HandJoint,
     InvalidInput,
@@ -20,18 +19,17 @@ from .._core import (
     LinkShape,
     PlaceRegion,
     Robot,
-    World,
 )
 from .._files import ASSETS, shipped
 from .._progress import Progress
 from ..documents.reading import RENAMED, Node, near_miss, read_yaml
+from .closed_fingers import fingers_may_meet
 from .shapes import read_shapes
 
 BASE_LIMITS = "linear_velocity angular_velocity linear_acceleration angular_acceleration workspace wheel_velocity wheel_separation"
 ROBOT_KEYS = "urdf srdf packages xacro_args base base_limits mount frames group tool_link joints home"
 BIN_LINK = "place_bin"
 SLOWEST = 1e-3  # of a base [m/s, rad/s and their rates]: a round that takes days has more samples than memory
-_MEET = 1e-4  # fingers nearer than this meet [m]
 
 
 @dataclass
@@ -201,25 +199,6 @@ def read_arm(root: Node, progress: Progress = None) -> ArmSetup:
     return ArmSetup(robot, arm, gripper)
 
 
-def fingers_may_meet(robot: Robot, arm: JointGroup, hand: Hand) -> Robot:
-    """The robot whose collision checks leave out pairs of links that the hand's joints move and that touch when it is closed: they are made to."""
-    open_, closed = (robot.link_poses(hand.joint_values(o)) for o in (hand.max_opening, hand.min_opening))
-    in_hand = [
-        [np.linalg.inv(poses[hand.tool_link]) @ poses[link] for link in robot.links] for poses in (open_, closed)
-    ]
-    driven = {link for link, a, b in zip(robot.links, *in_hand, strict=True) if np.abs(a - b).max() > 1e-9}
-    pairs = robot.disabled_pairs
-    kept = [(a, b, reason) for a, b, reason in pairs if reason != "never" or not {a, b} <= driven]  # "never" is a guess
-    bare = robot.with_disabled_pairs(kept)
-    group = bare.group(base_link=robot.links[0], tip=arm.tip).with_reference(hand.joint_values(hand.min_opening))
-    near = CollisionChecker(bare, World(), group).distances((group.sample_lower + group.sample_upper) / 2, _MEET)
-    meeting = {(pair.a, pair.b) for pair in near if {pair.a, pair.b} <= driven}
-    if not meeting:
-        return robot
-    others = [(a, b, reason) for a, b, reason in pairs if not {(a, b), (b, a)} & meeting]
-    return robot.with_disabled_pairs([*others, *((a, b, "default") for a, b in sorted(meeting))])
-
-
 def compose(node: Node) -> Robot:
     """The robot of a section: its own files, what is mounted on it, and frames."""
     limits = {}
@@ -227,8 +206,7 @@ def compose(node: Node) -> Robot:
         section = node["base_limits"].mapping("", BASE_LIMITS)
         slow = {key for key in BASE_LIMITS.split() if key.endswith(("velocity", "acceleration"))}
         limits = {
-            key: value.number(least=SLOWEST) if key in slow else value.number(above=0)
-            for key, value in section.items()
+            key: value.number(least=SLOWEST) if key in slow else value.number(above=0) for key, value in section.items()
         }
     base = node["base"].choice("fixed", "diff_drive", "omni") if "base" in node else "fixed"
     robot = _load(node, base, limits)

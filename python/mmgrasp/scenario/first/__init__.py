@@ -18,8 +18,9 @@ from ..._core import InvalidInput, LinkShape, Robot
 from ..._files import LARGEST_FILE, printable, read_text, shipped
 from ..._progress import Progress
 from ...documents.reading import Document
+from ..closed_fingers import fingers_may_meet
 from ..floor_map import read_floor_map
-from ..robot_section import compose, fingers_may_meet
+from ..robot_section import compose
 from .arm import Arm, Tool, find_arm, find_tool, flange
 from .drive import Drive, read_drive, wheel_speed
 from .room import COUNTER, TRAY, counter_height, fitting_part, place_room, tray_poses

@@ -194,7 +194,11 @@ def find_tool(robot: Robot, arm: Arm, link: str | None) -> Tool | None:
             except InvalidInput as error:
                 failures.append(str(error))
                 continue
-            frame = {"name": TOOL_FRAME, "parent": parent, "pose": {"xyz": [round(float(x), 4) for x in T[:3, 3]]}}
+            frame: dict[str, object] = {
+                "name": TOOL_FRAME,
+                "parent": parent,
+                "pose": {"xyz": [round(float(x), 4) for x in T[:3, 3]]},
+            }
             return Tool(TOOL_FRAME, frame, {"from_robot": True, "approach": _plain(approach)}, hand)
     why = failures[-1] if failures else f"{robot.name}: the fingers at {arm.hand_link} have no shapes"
     raise InvalidInput(

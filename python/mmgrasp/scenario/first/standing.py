@@ -208,7 +208,7 @@ class _Fold:
             trial = np.clip(q + random.normal(0, scale, len(q)) * np.minimum(high - low, 1.0), low, high)
             if (new := self.cost(trial)) < cost:
                 q, cost = trial, new
-        return q
+        return np.asarray(q)
 
 
 def _ball(shape: LinkShape) -> tuple[np.ndarray, float]:
@@ -278,7 +278,7 @@ def _bin_places(robot: Robot, group: JointGroup, home: np.ndarray, outline: Outl
         tops = {round(float(b[1][2]) + BIN_SIZE[2] + _MARGIN, 3) for b in under} | {ground + h for h in _HEIGHTS}
         sticks = float(
             outline.outside(
-                np.array([middle + s * BIN_SIZE[:2] / 2 for s in itertools.product((-1, 1), repeat=2)])
+                np.array([middle + np.array(s) * BIN_SIZE[:2] / 2 for s in itertools.product((-1, 1), repeat=2)])
             ).max()
         )
         for top in sorted(tops):

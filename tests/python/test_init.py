@@ -1,0 +1,152 @@
+"""`mmgrasp init`: what it reads from robots whose answer is known, and that what it writes is planned and verified as it stands."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import mmgrasp as mg
+from conftest import ASSETS
+from mmgrasp.cli import main
+from mmgrasp.part_supply import read_plan
+from mmgrasp.scenario.first import first_scenario
+from mmgrasp.scenario.first.arm import find_arm, find_tool
+from mmgrasp.scenario.first.drive import read_drive
+
+FETCH = ASSETS / "robots" / "fetchlike" / "fetchlike.urdf"
+OMNI = ASSETS / "robots" / "omni6" / "omni6.urdf"
+
+
+def wheeled(wheels: list[tuple[float, float, str]]) -> mg.Robot:
+    """A box on wheels at (x, y) with axles along an axis."""
+    links = joints = ""
+    for i, (x, y, axis) in enumerate(wheels):
+        links += f"<link name='wheel_{i}'><collision><geometry><sphere radius='0.1'/></geometry></collision></link>"
+        joints += (
+            f"<joint name='j{i}' type='continuous'><parent link='base'/><child link='wheel_{i}'/><axis xyz='{axis}'/>"
+            f"<origin xyz='{x} {y} 0.1'/><limit effort='1' velocity='5'/></joint>"
+        )
+    body = "<link name='base'><collision><origin xyz='0 0 0.3'/><geometry><box size='0.4 0.3 0.2'/></geometry></collision></link>"
+    return mg.Robot.from_strings(f"<robot name='r'>{body}{links}{joints}</robot>")
+
+
+def test_the_base_is_told_from_its_wheels() -> None:
+    two = read_drive(wheeled([(0, 0.2, "0 1 0"), (0, -0.2, "0 1 0")]), "", None)
+    assert (two.base, two.sure) == ("diff_drive", True)
+    assert two.separation == pytest.approx(0.4)
+    four = wheeled([(x, y, "0 1 0") for x in (-0.2, 0.2) for y in (-0.2, 0.2)])
+    assert (read_drive(four, "", None).base, read_drive(four, "", None).sure) == ("diff_drive", False)
+    assert read_drive(four, "<mesh filename='Mecanum.stl'/>", None).base == "omni"
+    turned = [(np.cos(a), np.sin(a), f"{np.cos(a)} {np.sin(a)} 0") for a in (0, 2.1, 4.2)]
+    assert read_drive(wheeled(turned), "", None).base == "omni"
+    with pytest.raises(mg.InvalidInput, match="--base"):
+        read_drive(mg.Robot.load(OMNI), "", None)
+
+
+def test_the_arm_and_hand_of_a_panda(data: Path) -> None:
+    robot = mg.Robot.load(data / "robots/panda/expanded/panda.urdf")
+    arm = find_arm(robot, [], None, None)
+    assert arm.joints == [f"panda_joint{i}" for i in range(1, 8)]
+    tool = find_tool(robot, arm, None)
+    assert tool is not None
+    assert tool.hand.max_opening == pytest.approx(0.08, abs=1e-3)  # its data sheet's
+    closing = robot.link_poses()[arm.hand_link][:3, :3] @ tool.hand.closing
+    assert (
+        abs(closing[:2] @ [1, 1]) < 1e-3 * 2**0.5 or abs(closing[:2] @ [1, -1]) < 1e-3 * 2**0.5
+    )  # half way between the axes
+
+
+def test_an_arm_without_fingers(data: Path) -> None:
+    path = data / "robots/tiago/example-robot-data/robots/tiago_description/robots/tiago_no_hand.urdf"
+    robot = mg.Robot.load(path, allow_missing_meshes=True)
+    drive = read_drive(robot, path.read_text(), None)
+    assert drive.base == "diff_drive"
+    assert drive.separation == pytest.approx(0.4044)  # where the URDF puts the wheels
+    arm = find_arm(robot, drive.wheels, None, None)
+    assert arm.joints == ["torso_lift_joint", *(f"arm_{i}_joint" for i in range(1, 8))]
+    assert find_tool(robot, arm, None) is None
+
+
+def planned_and_verified(folder: Path, urdf: Path, *options: str) -> dict[str, Any]:
+    """Through the command's doors, without an edit of what init wrote."""
+    file, out = folder / "first.yaml", folder / "out"
+    assert main(["init", str(urdf), "-o", str(file), *options]) == 0
+    assert main(["plan", str(file), "-o", str(out), "--no-pictures"]) == 0
+    assert main(["verify", str(out / "plan.json"), "--scenario", str(file), "--samples", "100"]) == 0
+    return read_plan(out / "plan.json")
+
+
+@pytest.mark.parametrize(("urdf", "options"), [(FETCH, []), (OMNI, ["--base", "omni"])])
+def test_shipped_robots_need_no_edit(tmp_path: Path, urdf: Path, options: list[str]) -> None:
+    plan = planned_and_verified(tmp_path, urdf, *options)
+    assert len(plan["picks"]) == 12
+
+
+def test_an_arm_on_a_base_gets_a_gripper_and_needs_no_edit(data: Path, tmp_path: Path) -> None:
+    arm = data / "robots/ur/expanded/ur10e.urdf"
+    base = data / "robots/ridgeback/expanded/ridgeback.urdf"
+    plan = planned_and_verified(tmp_path, base, "--mount", f"{arm}=mid_mount")
+    assert len(plan["picks"]) == 12
+
+
+def write_map(folder: Path, cells: np.ndarray) -> Path:
+    """A map of 10 cm cells, True where they are taken, rows upwards."""
+    rows = np.where(np.flipud(cells), 0, 254).astype(np.uint8)
+    (folder / "room.pgm").write_bytes(b"P5 %d %d 255\n" % rows.shape[::-1] + rows.tobytes())
+    text = "image: room.pgm\nresolution: 0.1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
+    (folder / "room.yaml").write_text(text)
+    return folder / "room.yaml"
+
+
+def test_the_counter_stands_where_the_map_is_free(tmp_path: Path) -> None:
+    cells = np.ones((60, 80), dtype=bool)
+    cells[2:-2, 2:-2] = False
+    cells[20:60, 40:44] = True  # a wall between two rooms
+    file = tmp_path / "first.yaml"
+    assert main(["init", str(FETCH), str(write_map(tmp_path, cells)), "-o", str(file)]) == 0
+    scenario = mg.load_scenario(file)  # refuses bodies that overlap, and a start or goal in collision
+    counter = next(o for o in scenario.obstacles if o.name == "counter")
+    low, high = counter.shapes[0].bounds
+    corners = np.array([[x, y, 0, 1] for x in (low[0], high[0]) for y in (low[1], high[1])]) @ counter.pose.T
+    assert not cells[(corners[:, 1] / 0.1).astype(int), (corners[:, 0] / 0.1).astype(int)].any()
+
+
+def test_a_map_without_room_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    cells = np.ones((60, 80), dtype=bool)
+    cells[:, 30:34] = False
+    assert main(["init", str(FETCH), str(write_map(tmp_path, cells)), "-o", str(tmp_path / "first.yaml")]) == 2
+    assert "no free place" in capsys.readouterr().err
+    assert not (tmp_path / "first.yaml").exists()
+
+
+def test_what_is_there_is_not_replaced(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "mine.yaml"
+    file.write_text("mine")
+    assert main(["init", str(FETCH), "-o", str(file)]) == 2
+    assert "not replaced" in capsys.readouterr().err
+    assert file.read_text() == "mine"
+    urdf = tmp_path / "r.urdf"
+    urdf.write_bytes(FETCH.read_bytes())
+    assert main(["check", str(urdf), "--write-srdf", str(urdf)]) == 2
+    assert urdf.read_bytes() == FETCH.read_bytes()
+
+
+def test_what_keeps_a_robot_from_picking_is_told(tmp_path: Path) -> None:
+    base = tmp_path / "base.urdf"
+    base.write_text("<robot name='cart'><link name='base'/></robot>")
+    with pytest.raises(mg.InvalidInput, match="--base diff_drive or --base omni"):
+        first_scenario(base)
+    with pytest.raises(mg.InvalidInput, match="nothing can pick"):
+        first_scenario(base, base="omni")
+    with pytest.raises(mg.InvalidInput, match="no such link"):
+        first_scenario(FETCH, tool_link="gripper_tpc")
+    with pytest.raises(mg.InvalidInput, match="no such group"):
+        first_scenario(FETCH, group="amr")
+
+
+def test_the_same_robot_gives_the_same_scenario(tmp_path: Path) -> None:
+    first, second = (first_scenario(FETCH, folder=tmp_path) for _ in range(2))
+    assert first.text == second.text

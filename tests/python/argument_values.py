@@ -2,79 +2,41 @@
 
 from __future__ import annotations
 
-import functools
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 import mmgrasp as mg
-from conftest import REPOSITORY
-from mmgrasp.grippers.turned_parts import block
+from argument_objects import (
+    ARM,
+    BOX,
+    CORPUS,
+    FINGERS,
+    GRID,
+    OBJECTS,
+    PART,
+    PLACE_REGION,
+    POSE,
+    ROBOT,
+    TRAY,
+    URDF,
+    WHOLE_BODY,
+    X_Y_THETA,
+    Q,
+    beam_member,
+    cube,
+    depth_camera,
+    depth_frame,
+    distance_field,
+    gripper,
+    occupancy_map,
+    sdf_map,
+    seven_joint_hand,
+    tetrahedron,
+    wall_map,
+    world,
+)
 from mmgrasp.problems.pipe_cells import pipe_robot
-
-CORPUS = REPOSITORY / "tests" / "fuzz" / "corpus"
-URDF = """<robot name="r"><link name="o"/>
-<link name="a"><collision><geometry><box size="0.1 0.1 0.4"/></geometry></collision></link><link name="b"/><link name="tip"/>
-<joint name="i" type="revolute"><parent link="o"/><child link="a"/><axis xyz="0 0 1"/><limit lower="-3" upper="3" velocity="1"/></joint>
-<joint name="j" type="revolute"><parent link="a"/><child link="b"/><origin xyz="0 0 0.3"/><axis xyz="0 1 0"/><limit lower="-2" upper="2" velocity="1"/></joint>
-<joint name="k" type="prismatic"><parent link="b"/><child link="tip"/><origin xyz="0.2 0 0"/><axis xyz="1 0 0"/><limit lower="0" upper="1" velocity="1"/></joint>
-</robot>"""
-
-SRDF = """<robot name="r"><group name="arm"><chain base_link="o" tip_link="tip"/></group>
-<group_state name="ready" group="arm"><joint name="i" value="0.1"/><joint name="j" value="0.2"/><joint name="k" value="0.3"/></group_state>
-</robot>"""
-ROBOT = mg.Robot.from_strings(URDF, SRDF, base="omni")
-ARM = ROBOT.group(base_link="o", tip="tip").with_acceleration_limits([1, 1, 1])
-Q = np.array([0.25, 0.5, 0.5])
-POSE = ARM.fk(Q)
-WHOLE_BODY = ROBOT.group(base_link="o", tip="tip", with_base=True)
-GRID = mg.base.BaseGrid([0.0, 0.0], 0.1, 4, 3)
-
-
-def world() -> mg.World:
-    world = mg.World()
-    world.add_box("box", [0.1, 0.1, 0.1], mg.pose([3, 3, 3]))
-    return world
-
-
-def held() -> mg.World:
-    held = world()
-    held.attach("box", "tip")
-    return held
-
-
-def depth_camera() -> mg.mapping.DepthCamera:
-    pinhole = mg.mapping.PinholeCamera(width=40, height=30, fx=60.0, fy=60.0, cx=19.5, cy=14.5)
-    return mg.mapping.DepthCamera(pinhole, mg.mapping.DepthNoise(constant=0.001))
-
-
-def depth_frame() -> mg.mapping.DepthImage:
-    """A wall 0.3 m in front of the camera."""
-    return mg.mapping.DepthImage(np.full((30, 40), 0.3, np.float32), depth_camera().intrinsics)
-
-
-def sdf_map() -> mg.ProbabilisticSdf:
-    sdf = mg.ProbabilisticSdf()
-    sdf.integrate(depth_frame(), depth_camera())
-    return sdf
-
-
-def occupancy_map() -> mg.mapping.OccupancyMap:
-    occupancy = mg.mapping.OccupancyMap()
-    occupancy.integrate(depth_frame(), depth_camera())
-    return occupancy
-
-
-def gripper() -> mg.Hand:
-    return mg.Hand("tip", approach=[1, 0, 0], closing=[0, 1, 0], max_opening=0.1, finger_depth=0.05, finger_width=0.02)
-
-
-BOX = mg.LinkShape(mg.Box([0.05, 0.05, 0.05]))
-PART = mg.base.Part("part", [BOX], POSE, [mg.Grasp(np.eye(4), 0.05)])
-TRAY = mg.base.Tray("tray", np.eye(4), [0.3, 0.3, 0.1], [PART])
-PLACE_REGION = mg.base.PlaceRegion(np.eye(4), [0.3, 0.3])
-X_Y_THETA = np.array([0.5, 0.25, 0.75])
 
 # Good arrays by the argument's name, and by class or function where the name means something else there.
 VALUES: dict[str, Any] = {
@@ -191,70 +153,6 @@ VALUES: dict[str, Any] = {
     "moment": np.array([0.0, 0.5, 0]),
     "pairwise_weights.comparison": np.ones((3, 3)),
     "ObjectPathProblem.T_world_object": np.array([POSE, POSE]),
-}
-
-
-@functools.cache
-def capability_map() -> mg.base.CapabilityMap:
-    return mg.base.CapabilityMap.build(ARM, upper=(1, 1, 2), voxel=1, poses=2, threads=1)
-
-
-def distance_field() -> mg.collision.GridDistanceField:
-    return mg.collision.GridDistanceField(np.ones((3, 3, 3)), [0.0, 0.0, 0.0], 0.5)
-
-
-def wall_map() -> mg.ProbabilisticSdf:
-    sdf = mg.ProbabilisticSdf()
-    sdf.integrate(depth_frame(), depth_camera())
-    return sdf
-
-
-def beam_member() -> mg.grasping.BeamMember:
-    return mg.grasping.BeamMember(0, 1, mg.grasping.round_section(0.01), mg.grasping.copper())
-
-
-def beam_frame() -> mg.grasping.BeamFrame:
-    return mg.grasping.BeamFrame([[0.0, 0, 0], [0.3, 0, 0]], [beam_member()])
-
-
-def tetrahedron() -> mg.Mesh:
-    corners = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
-    return mg.Mesh.from_arrays(corners, np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]))
-
-
-def cube() -> mg.Mesh:
-    return block([0.1, 0.1, 0.1])
-
-
-def seven_joint_hand() -> mg.Robot:
-    return mg.Robot.load(Path(mg.__file__).parent / "assets" / "grippers" / "sdhlike" / "sdhlike.urdf")
-
-
-FINGERS = [(f, [f"{f}_proximal", f"{f}_distal"]) for f in ("thumb", "finger_1", "finger_2")] + [("spread", ["spread"])]
-
-OBJECTS: dict[str, Any] = {
-    "Robot": lambda: ROBOT,
-    "RobotSource": lambda: ROBOT.source,
-    "JointGroup": lambda: ARM,
-    "World": world,
-    "DistanceField": distance_field,
-    "World.detach": held,
-    "CollisionChecker": lambda: mg.CollisionChecker(ROBOT, world(), ARM),
-    "ReachDatabase": lambda: mg.ReachDatabase.build(ARM, samples=1000, threads=1),
-    "CapabilityMap": capability_map,
-    "PinholeCamera": mg.mapping.PinholeCamera,
-    "ProbabilisticSdf": mg.ProbabilisticSdf,
-    "OccupancyMap": mg.mapping.OccupancyMap,
-    "BaseTracker": lambda: mg.base.BaseTracker(ROBOT),
-    "IkObjective": lambda: mg.robot.joint_limit_objective(ARM),
-    "IkSeedDatabase": lambda: mg.base.IkSeedDatabase(WHOLE_BODY),
-    "Roadmap": lambda: mg.planning.Roadmap.build(ARM, vertices=10),
-    "JointTrajectory": lambda: mg.time_parameterize([Q, Q / 2], np.ones(3), np.ones(3), names=["i", "j", "k"]),
-    "BeamFrame": beam_frame,
-    "SupportedFrame": lambda: mg.grasping.SupportedFrame(beam_frame(), mg.grasping.BeamSupport(0, 0.0)),
-    "PartSupplyProblem": lambda: mg.base.PartSupplyProblem(
-        ROBOT, ARM, gripper(), world(), [TRAY], Q, X_Y_THETA, X_Y_THETA, PLACE_REGION
-    ),
 }
 
 # The arguments beside the array.

@@ -16,7 +16,8 @@ import numpy as np
 import pytest
 
 import mmgrasp as mg
-from argument_values import ARM, COMPANIONS, GRID, OBJECTS, OTHERS, POSE, ROBOT, VALUES, X_Y_THETA, Q
+from argument_objects import ARM, GRID, OBJECTS, POSE, ROBOT, X_Y_THETA, Q
+from argument_values import COMPANIONS, OTHERS, VALUES
 from mmgrasp import _core
 
 STUBS = Path(mg.__file__).parent / "_core"

@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 
 import mmgrasp as mg
-from argument_values import ARM, OBJECTS, POSE, Q
+from argument_objects import ARM, OBJECTS, POSE, Q
 
 
 @pytest.fixture(autouse=True)

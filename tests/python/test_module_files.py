@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 import mmgrasp as mg
-from argument_values import ARM, OBJECTS, WHOLE_BODY, occupancy_map, sdf_map
+from argument_objects import ARM, OBJECTS, WHOLE_BODY, occupancy_map, sdf_map
 from conftest import ASSETS
 
 SEEDS = mg.base.IkSeedDatabase(WHOLE_BODY)

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import mmgrasp as mg
-from argument_values import ARM, OBJECTS, Q
+from argument_objects import ARM, OBJECTS, Q
 from conftest import ASSETS
 
 

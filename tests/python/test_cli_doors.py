@@ -166,3 +166,10 @@ def test_markup_in_names_is_text(small: dict[str, Any], tmp_path: Path, capfd: p
     printed = capfd.readouterr().out
     assert "[bold]x[/foo]" in printed
     assert "[red]hi[/]" in printed
+
+
+def test_a_foreign_backend_for_pictures_does_not_end_a_command() -> None:
+    code = "import contextlib\nfrom mmgrasp.cli import main\nwith contextlib.suppress(SystemExit): main(['--version'])\nimport matplotlib"
+    environment = {**os.environ, "MPLBACKEND": "nonsense"}
+    done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")

@@ -55,10 +55,10 @@ def check_file(path: Path) -> None:
     check_folder(_target(path).parent)
 
 
-def refuse_own_input(path: Path, source: Path) -> None:
+def refuse_own_input(path: Path, source: Path | None) -> None:
     """Raises IoError where what is to be written would replace the file that it is made from."""
     try:
-        same = os.path.samefile(path, source)
+        same = source is not None and os.path.samefile(path, source)
     except OSError:  # one of them is not there
         same = False
     if same:

@@ -302,3 +302,10 @@ def test_indices_out_of_range_are_refused() -> None:
     for count in (-1, 0):
         with pytest.raises(mg.InvalidInput, match="count"):
             database.nearest(POSE, count)
+
+
+@pytest.mark.parametrize("value", [10**400, np.array([0.5]), np.array([])])
+def test_values_that_are_no_single_number_of_their_type_are_told(value: Any) -> None:
+    """pybind11 takes their kind, then cannot convert them."""
+    with pytest.raises(mg.InvalidInput, match="its value cannot be taken"):
+        mg.ProbabilisticSdf(voxel=value)

@@ -12,9 +12,11 @@ import mmgrasp as mg
 from conftest import ASSETS
 from mmgrasp.cli import main
 from mmgrasp.part_supply import read_plan
+from mmgrasp.scenario.closed_fingers import fingers_may_meet
 from mmgrasp.scenario.first import first_scenario
-from mmgrasp.scenario.first.arm import find_arm, find_tool
+from mmgrasp.scenario.first.arm import find_arm
 from mmgrasp.scenario.first.drive import read_drive
+from mmgrasp.scenario.first.tool import find_tool
 
 FETCH = ASSETS / "robots" / "fetchlike" / "fetchlike.urdf"
 OMNI = ASSETS / "robots" / "omni6" / "omni6.urdf"
@@ -53,10 +55,8 @@ def test_the_arm_and_hand_of_a_panda(data: Path) -> None:
     tool = find_tool(robot, arm, None)
     assert tool is not None
     assert tool.hand.max_opening == pytest.approx(0.08, abs=1e-3)  # its data sheet's
-    closing = robot.link_poses()[arm.hand_link][:3, :3] @ tool.hand.closing
-    assert (
-        abs(closing[:2] @ [1, 1]) < 1e-3 * 2**0.5 or abs(closing[:2] @ [1, -1]) < 1e-3 * 2**0.5
-    )  # half way between the axes
+    # Its fingers close half way between x and y of the last link, in which the frame between their tips was made.
+    assert np.abs(tool.hand.closing) == pytest.approx([np.sqrt(0.5), np.sqrt(0.5), 0], abs=1e-6)
 
 
 def test_an_arm_without_fingers(data: Path) -> None:
@@ -132,6 +132,49 @@ def test_what_is_there_is_not_replaced(tmp_path: Path, capsys: pytest.CaptureFix
     urdf.write_bytes(FETCH.read_bytes())
     assert main(["check", str(urdf), "--write-srdf", str(urdf)]) == 2
     assert urdf.read_bytes() == FETCH.read_bytes()
+    srdf = tmp_path / "r.srdf"
+    srdf.write_bytes(FETCH.with_suffix(".srdf").read_bytes())
+    assert main(["check", str(urdf), "--srdf", str(srdf), "--write-srdf", str(srdf)]) == 2
+    assert srdf.read_bytes() == FETCH.with_suffix(".srdf").read_bytes()
+
+
+def test_a_plan_is_not_replaced_by_its_picture(small_plan: mg.part_supply.ScenarioPlan, tmp_path: Path) -> None:
+    plan = small_plan.save(tmp_path / "plan.json")
+    before = plan.read_bytes()
+    assert main(["view", str(plan), "--png", str(plan)]) == 2
+    assert plan.read_bytes() == before
+
+
+def meeting_fingers(apart: float) -> mg.Robot:
+    """Two blocks on slides that stand so far apart when closed [m], which an SRDF says touch never."""
+    links = "<link name='palm'/>"
+    joints = ""
+    for name, side in (("left", 1), ("right", -1)):
+        y = side * (0.01 + apart / 2)
+        links += f"<link name='{name}'><collision><origin xyz='0.05 {y} 0'/><geometry><box size='0.04 0.02 0.02'/></geometry></collision></link>"
+        joints += (
+            f"<joint name='{name}_joint' type='prismatic'><parent link='palm'/><child link='{name}'/><axis xyz='0 {side} 0'/>"
+            "<limit lower='0' upper='0.04' effort='1' velocity='1'/></joint>"
+        )
+    turn = (
+        "<link name='base'/><joint name='turn' type='revolute'><parent link='base'/><child link='palm'/><axis xyz='1 0 0'/>"
+        "<limit lower='-1' upper='1' effort='1' velocity='1'/></joint>"
+    )
+    tool = "<link name='tool'/><joint name='at' type='fixed'><parent link='palm'/><child link='tool'/><origin xyz='0.05 0 0'/></joint>"
+    srdf = "<robot name='r'><disable_collisions link1='left' link2='right' reason='Never'/></robot>"
+    return mg.Robot.from_strings(f"<robot name='r'>{turn}{links}{joints}{tool}</robot>", srdf)
+
+
+@pytest.mark.parametrize(("apart", "reason"), [(0.0, "default"), (5e-5, "default"), (0.002, "never")])
+def test_fingers_that_meet_when_closed_may(apart: float, reason: str) -> None:
+    robot = meeting_fingers(apart)
+    joints = [mg.grasping.HandJoint(f"{side}_joint", 0.0, 0.04) for side in ("left", "right")]
+    hand = mg.grasping.Hand(
+        "tool", approach=[1, 0, 0], closing=[0, 1, 0], max_opening=0.08, finger_depth=0.04, finger_width=0.02,
+        joints=joints, finger_links=["left", "right"],
+    )  # fmt: skip
+    pairs = fingers_may_meet(robot, hand).disabled_pairs
+    assert [why for a, b, why in pairs if {a, b} == {"left", "right"}] == [reason]
 
 
 def test_what_keeps_a_robot_from_picking_is_told(tmp_path: Path) -> None:

@@ -117,22 +117,7 @@ def _add_init(commands: Commands) -> None:
         help="where it is written (default scenario.yaml); no file is replaced",
     )
     parser.add_argument("--srdf", type=_path, metavar="FILE", help="default: one of the URDF's name beside it, if any")
-    parser.add_argument(
-        "--xacro-arg",
-        action="append",
-        default=[],
-        metavar="NAME=VALUE",
-        type=_xacro_argument,
-        help="an argument of the xacro file; may be repeated",
-    )
-    parser.add_argument(
-        "--package",
-        action="append",
-        default=[],
-        metavar="NAME=DIR",
-        type=_package,
-        help="where package://NAME/... lies; may be repeated",
-    )
+    _add_robot_files(parser)
     parser.add_argument(
         "--mount",
         action="append",
@@ -155,22 +140,7 @@ def _add_check(commands: Commands) -> None:
     parser = commands.add_parser("check", help="tell what mmgrasp understands of a robot")
     parser.add_argument("urdf", type=_path, help="a URDF, or a .xacro file that expands to one")
     parser.add_argument("--srdf", type=_path, metavar="FILE")
-    parser.add_argument(
-        "--xacro-arg",
-        action="append",
-        default=[],
-        metavar="NAME=VALUE",
-        type=_xacro_argument,
-        help="an argument of the xacro file; may be repeated",
-    )
-    parser.add_argument(
-        "--package",
-        action="append",
-        default=[],
-        metavar="NAME=DIR",
-        type=_package,
-        help="where package://NAME/... lies; may be repeated",
-    )
+    _add_robot_files(parser)
     parser.add_argument("--base", choices=["fixed", "diff_drive", "omni"], default="fixed")
     parser.add_argument(
         "--mesh-tolerance",
@@ -333,6 +303,26 @@ def _add_view(commands: Commands) -> None:
     parser.add_argument("plan", type=_path, help="plan.json")
     parser.add_argument("--png", type=_path, metavar="FILE", help="write a picture instead of opening the browser")
     parser.add_argument("--port", type=_count(0, 65535, ""), default=8080, metavar="N")
+
+
+def _add_robot_files(parser: argparse.ArgumentParser) -> None:
+    """What a URDF alone does not say about its files."""
+    parser.add_argument(
+        "--xacro-arg",
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        type=_xacro_argument,
+        help="an argument of the xacro file; may be repeated",
+    )
+    parser.add_argument(
+        "--package",
+        action="append",
+        default=[],
+        metavar="NAME=DIR",
+        type=_package,
+        help="where package://NAME/... lies; may be repeated",
+    )
 
 
 def _add_cluster_options(parser: argparse.ArgumentParser) -> None:

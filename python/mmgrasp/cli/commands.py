@@ -125,7 +125,8 @@ def run_check(arguments: argparse.Namespace, console: Console) -> int:
     """`mmgrasp check`: looks at a robot; the exit code."""
     if arguments.write_srdf is not None:
         check_file(arguments.write_srdf)
-        refuse_own_input(arguments.write_srdf, arguments.urdf)
+        for source in (arguments.urdf, arguments.srdf):
+            refuse_own_input(arguments.write_srdf, source)
     with Reporter(console) as report:
         found = check_robot(
             arguments.urdf,

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from .._core import CollisionChecker, Hand, JointGroup, Robot, World
+from .._core import CollisionChecker, Hand, Robot, World
 
 _MEET = 1e-4  # fingers nearer than this meet [m]
 
 
-def fingers_may_meet(robot: Robot, arm: JointGroup, hand: Hand) -> Robot:
+def fingers_may_meet(robot: Robot, hand: Hand) -> Robot:
     """The robot whose collision checks leave out pairs of links that the hand's joints move and that touch when it is closed: they are made to."""
     open_, closed = (robot.link_poses(hand.joint_values(o)) for o in (hand.max_opening, hand.min_opening))
     in_hand = [
@@ -19,7 +19,7 @@ def fingers_may_meet(robot: Robot, arm: JointGroup, hand: Hand) -> Robot:
     pairs = robot.disabled_pairs
     kept = [(a, b, reason) for a, b, reason in pairs if reason != "never" or not {a, b} <= driven]  # "never" is a guess
     bare = robot.with_disabled_pairs(kept)
-    group = bare.group(base_link=robot.links[0], tip=arm.tip).with_reference(hand.joint_values(hand.min_opening))
+    group = bare.group(base_link=robot.links[0], tip=hand.tool_link).with_reference(hand.joint_values(hand.min_opening))
     near = CollisionChecker(bare, World(), group).distances((group.sample_lower + group.sample_upper) / 2, _MEET)
     meeting = {(pair.a, pair.b) for pair in near if {pair.a, pair.b} <= driven}
     if not meeting:

@@ -156,8 +156,7 @@ def read_setup(sections: RobotSections, progress: Progress = None) -> RobotSetup
     _link(robot, node["tool_link"])
     gripper = _read_gripper(sections.gripper, robot, tool_link)
     robot, bin_pose = _add_bin(robot, sections.place_region)
-    robot = _core.with_sampled_pairs(robot, progress=progress)
-    robot = fingers_may_meet(robot, _read_group(robot, node["group"], tool_link), gripper)
+    robot = fingers_may_meet(_core.with_sampled_pairs(robot, progress=progress), gripper)
 
     other = {name: _joint_value(robot, name, value) for name, value in _named_numbers(node, "joints")}
     closed = gripper.joint_values(0.0)
@@ -192,8 +191,7 @@ def read_arm(root: Node, progress: Progress = None) -> ArmSetup:
     tool_link = node["tool_link"].string()
     _link(robot, node["tool_link"])
     gripper = _read_gripper(hand, robot, tool_link)
-    robot = _core.with_sampled_pairs(robot, progress=progress)
-    robot = fingers_may_meet(robot, _read_group(robot, node["group"], tool_link), gripper)
+    robot = fingers_may_meet(_core.with_sampled_pairs(robot, progress=progress), gripper)
     other = {name: _joint_value(robot, name, value) for name, value in _named_numbers(node, "joints")}
     arm = _read_group(robot, node["group"], tool_link).with_reference({**other, **gripper.joint_values(0.0)})
     return ArmSetup(robot, arm, gripper)

@@ -7,12 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..._core import InvalidInput, LinkShape, Robot
+from ..._core import InvalidInput, Robot
+from .tree import Tree, box_around
 
 _ON_GROUND = 0.03  # a wheel's lowest point is at most so far above the robot's [m]
 _LEVEL = 0.1  # sine of the largest tilt of an axle
 _PARALLEL = 0.98  # cosine between axles, or joints, that count as parallel
 _SAME_AXLE = 0.05  # wheels nearer than this along the way they roll share an axle [m]
+_LIMITLESS = 1e3  # a wheel's joint that may turn faster has no limit in its file [rad/s]
 _OMNI_WORDS = ("mecanum", "omni_wheel", "omniwheel", "omni_base", "swedish")
 
 
@@ -63,8 +65,9 @@ class _Wheel:
 def find_wheels(robot: Robot) -> dict[str, _Wheel]:
     """Joints without an end whose level axles turn links that stand on the ground, as the robot stands when all its joints are 0; castors are left
     out where other wheels drive."""
-    poses = robot.link_poses()
-    lowest = {link: _lowest(robot, link, pose) for link, pose in poses.items()}
+    tree, poses = Tree(robot), robot.link_poses()
+    boxes = {link: box_around(robot, poses, [link]) for link in robot.links}
+    lowest = {link: float(box[0][2]) if box else np.inf for link, box in boxes.items()}
     ground = min(lowest.values())
     wheels = {}
     for joint in robot.joint_table:
@@ -74,38 +77,19 @@ def find_wheels(robot: Robot) -> dict[str, _Wheel]:
         )
         if not endless or joint["mimic"] is not None:
             continue
-        axis = joint_axis(robot, joint["name"], joint["parent"], joint["child"])
+        axis = tree.axis(joint["name"])
         if abs(axis[2]) < _LEVEL and (named or lowest[joint["child"]] < ground + _ON_GROUND):
-            wheels[joint["name"]] = _Wheel(axis, poses[joint["child"]][:3, 3], _steered(robot, joint["parent"]))
+            wheels[joint["name"]] = _Wheel(axis, poses[joint["child"]][:3, 3], _steered(tree, joint["parent"]))
     straight = {name: wheel for name, wheel in wheels.items() if not wheel.steered}
     return straight or wheels
 
 
-def joint_axis(robot: Robot, name: str, parent: str, child: str) -> np.ndarray:
-    """Unit axis of a joint that turns, in the root frame at zero."""
-    row = next(joint for joint in robot.joint_table if joint["name"] == name)
-    step = min(0.5, 0.5 * (row["upper"] - row["lower"]))
-    start = min(max(0.0, row["lower"]), row["upper"] - step)
-    before, after = (robot.link_poses({name: value}) for value in (start, start + step))
-    R = before[parent][:3, :3] @ (np.linalg.inv(after[parent]) @ after[child])[:3, :3] @ before[child][:3, :3].T
-    axis = np.array([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]])
-    return np.asarray(axis / max(float(np.linalg.norm(axis)), 1e-12))
-
-
-def _lowest(robot: Robot, link: str, T: np.ndarray) -> float:
-    shapes = robot.collisions(link)
-    return min((float(LinkShape(s.shape, T @ s.pose).bounds[0][2]) for s in shapes), default=float("inf"))
-
-
-def _steered(robot: Robot, link: str) -> bool:
+def _steered(tree: Tree, link: str) -> bool:
     """Whether what carries a wheel hangs on a joint that turns about the vertical."""
-    table = {joint["child"]: joint for joint in robot.joint_table}
-    while link in table and table[link]["type"] == "fixed":
-        link = table[link]["parent"]
-    steering = table.get(link)
-    if steering is None or steering["type"] == "prismatic":
+    body = tree.body(link)
+    if body not in tree.into or tree.joints[tree.into[body]]["type"] == "prismatic":
         return False
-    return bool(abs(joint_axis(robot, steering["name"], steering["parent"], steering["child"])[2]) > _PARALLEL)
+    return bool(abs(tree.axis(tree.into[body])[2]) > _PARALLEL)
 
 
 def _axles(wheels: dict[str, _Wheel]) -> int:
@@ -129,11 +113,8 @@ def wheel_speed(robot: Robot, wheels: list[str]) -> float | None:
     for joint in robot.joint_table:
         if joint["name"] not in wheels:
             continue
-        shapes = robot.collisions(joint["child"])
-        T = poses[joint["child"]]
-        tops = [LinkShape(s.shape, T @ s.pose).bounds for s in shapes]
-        if not tops or not 0 < joint["velocity"] < 1e3:
+        box = box_around(robot, poses, [joint["child"]])
+        if box is None or not 0 < joint["velocity"] < _LIMITLESS:
             return None
-        radius = (max(b[1][2] for b in tops) - min(b[0][2] for b in tops)) / 2
-        speeds.append(float(radius * joint["velocity"]))
+        speeds.append(float((box[1] - box[0])[2] / 2 * joint["velocity"]))
     return min(speeds) if speeds else None

@@ -1,28 +1,24 @@
-"""How a robot stands while it drives: its arm folded over the base, and a bin that the arm reaches."""
+"""How a robot stands while it drives: its arms folded over the base."""
 
 from __future__ import annotations
 
-import itertools
 from dataclasses import dataclass
 
 import numpy as np
 
-from ..._core import CollisionChecker, Hand, JointGroup, LinkShape, Outcome, Robot, World, pose
+from ..._core import CollisionChecker, Hand, JointGroup, LinkShape, Robot, World
 from ..._progress import Progress
-from .arm import Arm, Tree
+from .arm import Arm
+from .tree import Tree, box_around
 
 _DRAWS = 3000  # configurations drawn at random
 _STEPS = 1500  # attempts to better the best of them
+_UNKNOWN = 0.2  # half a side of a base without shapes [m]
 _SUNK = 0.02  # a robot that reaches lower below its root frame stands on a ground below it [m]
 _MARGIN = 0.01  # bodies that do not belong together keep so far apart [m]
 _STATES = ("tuck", "home", "rest", "stow", "fold", "park", "travel")  # words in names of SRDF states
 _LEAST_NAMED = 4  # joints of the arm that such a state names
 _WORSE = 0.15  # a named state may stick out so much farther than what was found [m]
-BIN_SIZE = np.array([0.24, 0.20, 0.10])
-DROP_HEIGHT = 0.03
-_ABOVE_BIN = 0.08  # the tool frame is tried so far above the bin's top face [m]
-_HEIGHTS = (0.35, 0.5, 0.65, 0.8)  # of its top face above the ground where it hangs beside the base [m]
-_TURNS = 4  # of the hand about the vertical that are tried there
 
 
 @dataclass(frozen=True)
@@ -53,18 +49,12 @@ def outline_of(robot: Robot, wheels: list[str]) -> Outline:
     """The box around the links that no joint but a wheel's moves."""
     tree = Tree(robot)
     still = [link for link in robot.links if not set(tree.path(link)) - set(wheels)]
-    low, high = np.full(3, np.inf), np.full(3, -np.inf)
-    for link, T in robot.link_poses().items():
-        for shape in robot.collisions(link) if link in still else []:
-            a, b = LinkShape(shape.shape, T @ shape.pose).bounds
-            low, high = np.minimum(low, a), np.maximum(high, b)
-    if not np.isfinite(low).all():
-        low, high = np.full(3, -0.2), np.full(3, 0.2)
+    low, high = box_around(robot, robot.link_poses(), still) or (np.full(3, -_UNKNOWN), np.full(3, _UNKNOWN))
     low[2] = low[2] if low[2] < -_SUNK else 0.0
     return Outline(low, high)
 
 
-def resting_joints(
+def _resting_joints(
     robot: Robot, arm: Arm, wheels: list[str], group: JointGroup, fingers: dict[str, float]
 ) -> dict[str, float]:
     """Joints of neither arm nor hand: at 0 or as near to it as their limits let, where that makes nothing touch; else in their middle, or at an end."""
@@ -108,7 +98,7 @@ def find_home(
     Deterministic: drawn with a fixed seed.
     """
     tree = Tree(robot)
-    others = resting_joints(robot, arm, wheels, group, hand.joint_values(0.0))
+    others = _resting_joints(robot, arm, wheels, group, hand.joint_values(0.0))
     for i, end in enumerate(arm.others):
         if progress is not None:
             progress("folding the arms", i / (1 + len(arm.others)))
@@ -214,78 +204,3 @@ class _Fold:
 def _ball(shape: LinkShape) -> tuple[np.ndarray, float]:
     low, high = LinkShape(shape.shape, shape.pose).bounds
     return np.append((low + high) / 2, 1.0), float(np.linalg.norm(high - low) / 2)
-
-
-@dataclass
-class Bin:
-    """Where an open bin may be fixed: the middle of its top face in the parent's frame."""
-
-    parent: str
-    xyz: np.ndarray
-    reached: float  # share of the tried hand poses above it that the arm reaches
-
-
-def find_bin(
-    robot: Robot, group: JointGroup, home: np.ndarray, hand: Hand, outline: Outline, progress: Progress = None
-) -> Bin | None:
-    """The place on the base, or beside it, above which the arm reaches most hand poses that look down; None: nowhere any."""
-    parent = robot.links[0]
-    best: Bin | None = None
-    places = _bin_places(robot, group, home, outline)
-    for i, place in enumerate(places):
-        if progress is not None:
-            progress("looking for a place for the bin", i / len(places))
-        world = World()
-        world.add_box("bin", BIN_SIZE, pose(place - [0, 0, BIN_SIZE[2] / 2]))
-        reached = 0
-        for turn in range(_TURNS):
-            T = looking_down(hand, place + [0, 0, _ABOVE_BIN], 2 * np.pi * turn / _TURNS)
-            reached += group.ik(T, home, world, restarts=8).outcome == Outcome.solved
-        if best is None or reached / _TURNS > best.reached:
-            best = Bin(parent, place, reached / _TURNS)
-        if reached == _TURNS:
-            break
-    return best if best is not None and best.reached > 0 else None
-
-
-def looking_down(hand: Hand, point: np.ndarray, turn: float) -> np.ndarray:
-    """A pose of the tool frame at a point with the approach axis downwards, turned about it [rad]."""
-    axes = np.column_stack([hand.approach, hand.closing, np.cross(hand.approach, hand.closing)])
-    c, s = np.cos(turn), np.sin(turn)
-    wanted = np.column_stack([[0, 0, -1], [c, s, 0], np.cross([0, 0, -1], [c, s, 0])])
-    T = np.eye(4)
-    T[:3, :3] = wanted @ axes.T
-    T[:3, 3] = point
-    return T
-
-
-def _bin_places(robot: Robot, group: JointGroup, home: np.ndarray, outline: Outline) -> list[np.ndarray]:
-    """Middles of the bin's top face where it touches nothing: those that stick out least first, from behind to the front; on the base, or beside it at one of some heights."""
-    poses = group.link_poses(home)
-    boxes = []
-    for link, T in poses.items():
-        for shape in robot.collisions(link):
-            boxes.append(LinkShape(shape.shape, T @ shape.pose).bounds)
-    low, high = outline.low[:2] - BIN_SIZE[:2] / 2 - 0.02, outline.high[:2] + BIN_SIZE[:2] / 2 + 0.02
-    half = BIN_SIZE[:2] / 2 + _MARGIN
-    found = []
-    for x, y in itertools.product(
-        *(np.linspace(a, b, max(2, int(np.ceil((b - a) / 0.06)) + 1)) for a, b in zip(low, high, strict=True))
-    ):
-        middle = np.array([x, y])
-        under = [b for b in boxes if (np.abs(middle - np.clip(middle, b[0][:2], b[1][:2])) < half).all()]
-        ground = float(outline.low[2])
-        tops = {round(float(b[1][2]) + BIN_SIZE[2] + _MARGIN, 3) for b in under} | {ground + h for h in _HEIGHTS}
-        sticks = float(
-            outline.outside(
-                np.array([middle + np.array(s) * BIN_SIZE[:2] / 2 for s in itertools.product((-1, 1), repeat=2)])
-            ).max()
-        )
-        for top in sorted(tops):
-            bottom = top - BIN_SIZE[2]
-            free = all(b[1][2] <= bottom - 0.5 * _MARGIN or b[0][2] >= top + 0.5 * _MARGIN for b in under)
-            stands = bool(under) and any(b[1][2] <= bottom for b in under)
-            if free and ground + 0.15 <= bottom and top <= ground + 1.2 and (stands or sticks > 0):
-                found.append((round(sticks, 2), top > ground + 0.9, x, abs(y), np.array([x, y, top])))
-    found.sort(key=lambda f: f[:4])
-    return [np.round(f[4], 3) for f in found[:150]]

@@ -16,6 +16,8 @@ from mmgrasp.scenario.closed_fingers import fingers_may_meet
 from mmgrasp.scenario.first import first_scenario
 from mmgrasp.scenario.first.arm import find_arm
 from mmgrasp.scenario.first.drive import read_drive
+from mmgrasp.scenario.first.room import place_room
+from mmgrasp.scenario.first.standing import Outline
 from mmgrasp.scenario.first.tool import find_tool
 
 FETCH = ASSETS / "robots" / "fetchlike" / "fetchlike.urdf"
@@ -112,6 +114,34 @@ def test_the_counter_stands_where_the_map_is_free(tmp_path: Path) -> None:
     low, high = counter.shapes[0].bounds
     corners = np.array([[x, y, 0, 1] for x in (low[0], high[0]) for y in (low[1], high[1])]) @ counter.pose.T
     assert not cells[(corners[:, 1] / 0.1).astype(int), (corners[:, 0] / 0.1).astype(int)].any()
+
+
+def test_counter_and_base_keep_off_pillars() -> None:
+    """Rooms with pillars anywhere: looked at as distances from points to boxes, which is not how a place is sought."""
+    outline = Outline(np.array([-0.3, -0.25, 0.0]), np.array([0.3, 0.25, 0.5]))
+    placed = 0
+    for seed in range(20):
+        random = np.random.default_rng(seed)
+        ends = [(6.0, 0.1, 3, 0), (6.0, 0.1, 3, 5), (0.1, 5.0, 0, 2.5), (0.1, 5.0, 6, 2.5)]
+        boxes = [*ends, *((0.2, 0.2, *random.uniform((0, 0), (6, 5))) for _ in range(12))]
+        walls = [mg.collision.LinkShape(mg.collision.Box([a, b, 1.0]), mg.pose([x, y, 0.5])) for a, b, x, y in boxes]
+        try:
+            layout = place_room(outline, walls)
+        except mg.InvalidInput:
+            continue
+        placed += 1
+
+        def clearance(points: np.ndarray, boxes: list[Any] = boxes) -> float:
+            gaps = [np.maximum(np.abs(points - [x, y]) - [a / 2, b / 2], 0) for a, b, x, y in boxes]
+            return float(np.linalg.norm(gaps, axis=2).min())
+
+        x, y, heading = layout.counter
+        R = np.array([[np.cos(heading), -np.sin(heading)], [np.sin(heading), np.cos(heading)]])
+        grid = np.stack(np.meshgrid(np.linspace(-0.25, 0.25, 26), np.linspace(-0.8, 0.8, 81)), axis=-1).reshape(-1, 2)
+        assert clearance(grid @ R.T + [x, y]) > 0
+        for base in (layout.start, layout.goal):
+            assert clearance(base[None, :2]) > np.hypot(0.3, 0.25)  # it can turn there
+    assert placed > 10
 
 
 def test_a_map_without_room_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

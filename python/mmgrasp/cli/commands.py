@@ -254,9 +254,7 @@ COMMANDS = {
 def main(arguments: Sequence[str] | None = None) -> int:
     """The command; its exit code. Errors of the user are one line on stderr."""
     open_streams()
-    os.environ["MPLBACKEND"] = (
-        "Agg"  # pictures go to files; a backend's name that matplotlib does not know ends its import
-    )
+    os.environ["MPLBACKEND"] = "Agg"  # pictures go to files; of a name it does not know matplotlib cannot be imported
     try:
         with ended_by_signals():
             try:

@@ -24,6 +24,7 @@ _ABOVE = 0.006  # a tray's floor lies so far above the counter [m]: its thicknes
 _HELD = 0.75  # of a part's height, where the hand holds it
 _ENOUGH = 0.7  # share of these places that must be reached from one place of the base
 _ROOM = 0.10  # around the turning base that is kept free on a map [m]
+_BEHIND = 0.3  # a wall so far behind the counter is what it stands at [m]
 _AHEAD = 1.2  # start and goal lie so far before the counter in an empty room [m]
 
 
@@ -115,13 +116,12 @@ def _place_on_map(reach: float, outline: Outline, walls: list[LinkShape]) -> Lay
         )
     largest = grid.largest_piece(free)
     along = outline.high[0] + 0.15 + COUNTER[0] / 2  # from the base before it to the counter's middle
-    best = None
+    cells, best = grid.middles(largest), None
     for heading in np.arange(8) * np.pi / 4:
         ahead = np.array([np.cos(heading), np.sin(heading)])
-        cells = grid.middles(largest)
         middle = cells + along * ahead
-        room = grid.rectangle_free(middle, heading, COUNTER + 0.06)
-        behind = grid.taken(middle + (COUNTER[0] / 2 + 0.3) * ahead)  # with its back to a wall it is out of the way
+        room = grid.rectangle_free(middle, heading, COUNTER)
+        behind = grid.taken(middle + (COUNTER[0] / 2 + _BEHIND) * ahead)  # with its back to a wall it is out of the way
         for k in np.flatnonzero(room & behind)[:1].tolist() or np.flatnonzero(room)[:1].tolist():
             candidate = (not behind[k], heading, np.array([*middle[k], heading]), cells[k])
             if best is None or candidate[:2] < best[:2]:

@@ -82,10 +82,6 @@ void shorten(BaseClearance& clearance, const BaseSearchSettings& settings, Poses
   }
 }
 
-}  // namespace
-
-namespace {
-
 /// The part of a floor around two places that has room for kMaxCells cells of the resolution asked for; the whole of a
 /// floor that has no more.
 Eigen::AlignedBox2d around(const Eigen::AlignedBox2d& floor, const Eigen::Vector3d& from, const Eigen::Vector3d& to,

@@ -216,8 +216,16 @@ def test_what_keeps_a_robot_from_picking_is_told(tmp_path: Path) -> None:
         first_scenario(base, base="omni")
     with pytest.raises(mg.InvalidInput, match="no such link"):
         first_scenario(FETCH, tool_link="gripper_tpc")
+    with pytest.raises(mg.InvalidInput, match="0 joints lead to it"):
+        first_scenario(FETCH, tool_link="base_link")
     with pytest.raises(mg.InvalidInput, match="no such group"):
         first_scenario(FETCH, group="amr")
+
+
+def test_shipped_files_keep_their_shipped_names() -> None:
+    text = first_scenario("asset:robots/fetchlike/fetchlike.urdf").text
+    assert 'srdf: "asset:robots/fetchlike/fetchlike.srdf"' in text
+    assert str(ASSETS) not in text
 
 
 def test_the_same_robot_gives_the_same_scenario(tmp_path: Path) -> None:

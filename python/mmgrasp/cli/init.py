@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import shlex
 
 from rich.console import Console
 
@@ -47,5 +48,9 @@ def run_init(arguments: argparse.Namespace, console: Console) -> int:
             printable(f"written to {name}, which cannot be planned yet: {fault}"), markup=False, soft_wrap=True
         )
         return FAULTY
-    console.print(f"written to {name}; next: mmgrasp plan {name} -o out/", markup=False, soft_wrap=True)
+    console.print(
+        f"written to {name}; next: mmgrasp plan {printable(shlex.quote(str(arguments.out)))} -o out/",
+        markup=False,
+        soft_wrap=True,
+    )
     return DONE

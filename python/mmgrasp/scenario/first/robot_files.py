@@ -10,7 +10,7 @@ from typing import Any
 
 from ... import _core
 from ..._core import InvalidInput, Robot
-from ..._files import LARGEST_FILE, read_text, shipped
+from ..._files import ASSETS, LARGEST_FILE, read_text, shipped
 from ...documents.reading import Document
 from ..robot_section import compose
 from .arm import Arm, find_arm
@@ -48,7 +48,7 @@ def read_robot(
     """Reads the files as scenarios do and finds base, arm, hand and tool frame; see first_scenario for the arguments."""
     found, doubts = [], []
     rows: dict[str, Any] = {"urdf": relative(urdf, folder)}
-    srdf = srdf if srdf is not None else _srdf_beside(shipped(urdf))
+    srdf = srdf if srdf is not None else _srdf_beside(urdf)
     if srdf is not None:
         rows["srdf"] = relative(srdf, folder)
         found.append(f"SRDF       {srdf}")
@@ -95,16 +95,20 @@ def _composed(rows: dict[str, Any], folder: Path) -> Robot:
 
 def _mount_row(file: str, link: str, folder: Path) -> dict[str, Any]:
     row: dict[str, Any] = {"urdf": relative(file, folder), "parent_link": link}
-    srdf = _srdf_beside(shipped(file))
+    srdf = _srdf_beside(file)
     if srdf is not None:
         row["srdf"] = relative(srdf, folder)
     return row
 
 
-def _srdf_beside(urdf: Path) -> Path | None:
-    """An SRDF of the URDF's name in its folder, or in the folder srdf beside that."""
-    name = urdf.name.split(".")[0] + ".srdf"
-    return next((p for p in (urdf.parent / name, urdf.parent.parent / "srdf" / name) if p.is_file()), None)
+def _srdf_beside(urdf: str | os.PathLike[str]) -> str | None:
+    """An SRDF of the URDF's name in its folder, or in the folder srdf beside that; of a shipped one by its shipped name."""
+    path = shipped(urdf)
+    name = path.name.split(".")[0] + ".srdf"
+    found = next((p for p in (path.parent / name, path.parent.parent / "srdf" / name) if p.is_file()), None)
+    if found is None or not os.fspath(urdf).startswith("asset:"):
+        return None if found is None else str(found)
+    return f"asset:{found.relative_to(ASSETS).as_posix()}"
 
 
 def relative(path: str | os.PathLike[str], folder: Path) -> str:

@@ -35,8 +35,8 @@ def find_arm(robot: Robot, wheels: list[str], group: str | None, end: str | None
         if end not in robot.links:
             raise InvalidInput(f"tool_link = {end!r}: the robot has no such link{near_miss(end, robot.links)}")
         ends = [tree.body(end)]
-        if (joints := len(_driven(tree, ends[0], wheels))) < _LEAST_ARM:
-            raise InvalidInput(f"tool_link = {end!r}: {joints} joints lead to it: an arm has at least {_LEAST_ARM}")
+        if (count := len(_driven(tree, ends[0], wheels))) < _LEAST_ARM:
+            raise InvalidInput(f"tool_link = {end!r}: {count} joints lead to it: an arm has at least {_LEAST_ARM}")
     ends = [link for link in ends if len(_driven(tree, link, wheels)) >= _LEAST_ARM]
     if not ends:
         raise InvalidInput(

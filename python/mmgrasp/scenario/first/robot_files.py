@@ -15,8 +15,8 @@ from ...documents.reading import Document
 from ..robot_section import compose
 from .arm import Arm, find_arm
 from .drive import Drive, read_drive
-from .text import rounded
 from .tool import Tool, find_tool, flange
+from .yaml_lines import rounded
 
 GRIPPER = "asset:grippers/parallel/parallel.urdf"
 

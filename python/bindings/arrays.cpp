@@ -3,15 +3,23 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numeric>
 #include <sstream>
 
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp::python {
 namespace {
 
 using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+std::string shown(double number) {
+  std::ostringstream out;
+  out << number;
+  return out.str();
+}
 
 std::string shape_text(const std::vector<py::ssize_t>& shape) {
   std::ostringstream out;
@@ -40,9 +48,13 @@ py::array array_of(const py::handle& value, const std::string& name, const std::
   throw InvalidInput(name + " = <" + given + ">: must be an array of " + wanted);
 }
 
-/// `shape`: lengths, -1 for any. They are looked at first: a copy of what cannot fit may take all memory.
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr double kFinite = std::numeric_limits<double>::max();
+
+/// `shape`: lengths, -1 for any. They are looked at first: a copy of what cannot fit may take all memory. No number is
+/// larger than `largest`.
 Array numbers(const py::handle& value, const std::string& name, const std::vector<Eigen::Index>& shape,
-              const std::string& wanted, bool infinite = false) {
+              const std::string& wanted, double largest = kFinite) {
   const py::array raw = array_of(value, name, "fiu", "numbers of shape " + wanted);
   const auto given = shape_of(raw);
   const auto fits = [](Eigen::Index length, py::ssize_t found) { return length < 0 || length == found; };
@@ -53,13 +65,15 @@ Array numbers(const py::handle& value, const std::string& name, const std::vecto
     throw InvalidInput(name + ": cannot be converted to an array of float64");
   }
   for (py::ssize_t i = 0; i < array.size(); ++i) {
-    if (infinite ? std::isnan(array.data()[i]) : !std::isfinite(array.data()[i])) {
+    if (!(std::abs(array.data()[i]) <= largest)) {
       const py::ssize_t columns = array.shape(array.ndim() - 1);
       const std::string entry = array.ndim() == 2
                                     ? "(" + std::to_string(i / columns) + ", " + std::to_string(i % columns) + ")"
                                     : std::to_string(i);
-      throw InvalidInput(name + " holds " + std::to_string(array.data()[i]) + " at entry " + entry +
-                         (infinite ? ": must be a number" : ": must be finite"));
+      throw InvalidInput(name + " holds " + shown(array.data()[i]) + " at entry " + entry +
+                         (largest == kInfinite ? ": must be a number"
+                          : largest == kFinite ? ": must be finite"
+                                               : ": must be finite and within " + shown(largest)));
     }
   }
   return array;
@@ -81,10 +95,18 @@ std::vector<double> finite_argument(std::vector<double> values, const std::strin
   return values;
 }
 
-Eigen::VectorXd vector_argument(const py::handle& value, const std::string& name, Eigen::Index size) {
+static Eigen::VectorXd vector_of(const py::handle& value, const std::string& name, Eigen::Index size, double largest) {
   const std::string wanted = "(" + count_text(size, "n") + ",)";
-  const Array array = numbers(value, name, {size}, wanted);
+  const Array array = numbers(value, name, {size}, wanted, largest);
   return Eigen::Map<const Eigen::VectorXd>(array.data(), array.size());
+}
+
+Eigen::VectorXd vector_argument(const py::handle& value, const std::string& name, Eigen::Index size) {
+  return vector_of(value, name, size, kFinite);
+}
+
+Eigen::VectorXd configuration_argument(const py::handle& value, const std::string& name, Eigen::Index size) {
+  return vector_of(value, name, size, kLargestLength);
 }
 
 Eigen::Vector2d vector2_argument(const py::handle& value, const std::string& name) {
@@ -95,17 +117,21 @@ Eigen::Vector3d vector3_argument(const py::handle& value, const std::string& nam
   return vector_argument(value, name, 3);
 }
 
-static Array rows_of_numbers(const py::handle& value, const std::string& name, Eigen::Index columns, bool infinite) {
+static Array rows_of_numbers(const py::handle& value, const std::string& name, Eigen::Index columns, double largest) {
   const std::string wanted = "(m, " + count_text(columns, "n") + ")";
-  return numbers(value, name, {-1, columns}, wanted, infinite);
+  return numbers(value, name, {-1, columns}, wanted, largest);
 }
 
 py::array_t<double> batch_argument(const py::handle& value, const std::string& name, Eigen::Index columns) {
-  return rows_of_numbers(value, name, columns, false);
+  return rows_of_numbers(value, name, columns, kFinite);
+}
+
+py::array_t<double> configuration_batch(const py::handle& value, const std::string& name, Eigen::Index columns) {
+  return rows_of_numbers(value, name, columns, kLargestLength);
 }
 
 Eigen::MatrixXd matrix_argument(const py::handle& value, const std::string& name, Eigen::Index columns, bool infinite) {
-  const Array array = rows_of_numbers(value, name, columns, infinite);
+  const Array array = rows_of_numbers(value, name, columns, infinite ? kInfinite : kFinite);
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   return Eigen::Map<const RowMajor>(array.data(), array.shape(0), array.shape(1));
 }
@@ -144,11 +170,21 @@ std::vector<std::uint8_t> flags_argument(const py::handle& value, const std::str
   return raw.itemsize() == 1 ? checked_flags<std::uint8_t>(raw, name) : checked_flags<std::int64_t>(raw, name);
 }
 
-std::vector<Eigen::VectorXd> rows_argument(const py::handle& value, const std::string& name, Eigen::Index columns) {
-  const Eigen::MatrixXd matrix = matrix_argument(value, name, columns);
-  std::vector<Eigen::VectorXd> rows(matrix.rows());
-  for (Eigen::Index i = 0; i < matrix.rows(); ++i) rows[i] = matrix.row(i);
+static std::vector<Eigen::VectorXd> split(const Array& array) {
+  std::vector<Eigen::VectorXd> rows(array.shape(0));
+  const Eigen::Index columns = array.shape(1);
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    rows[i] = Eigen::Map<const Eigen::VectorXd>(array.data() + i * columns, columns);
   return rows;
+}
+
+std::vector<Eigen::VectorXd> rows_argument(const py::handle& value, const std::string& name, Eigen::Index columns) {
+  return split(rows_of_numbers(value, name, columns, kFinite));
+}
+
+std::vector<Eigen::VectorXd> configurations_argument(const py::handle& value, const std::string& name,
+                                                     Eigen::Index columns) {
+  return split(rows_of_numbers(value, name, columns, kLargestLength));
 }
 
 py::array_t<double> to_array(const Pose& T) {

@@ -43,8 +43,14 @@ Pose pose_argument(const py::object& value, const std::string& name);
 /// Zeros and ones (or booleans) of the given shape or flattened, as one row; without a shape any number of them.
 std::vector<std::uint8_t> flags_argument(const py::handle& value, const std::string& name,
                                          const std::vector<py::ssize_t>& shape = {});
-/// (m, n) rows as separate configurations.
+/// (m, n) rows as separate vectors.
 std::vector<Eigen::VectorXd> rows_argument(const py::handle& value, const std::string& name, Eigen::Index columns = -1);
+
+/// The same of joint values [rad, m], none beyond kLargestLength: a configuration (n,), several (m, n), many (m, n).
+Eigen::VectorXd configuration_argument(const py::handle& value, const std::string& name, Eigen::Index size = -1);
+std::vector<Eigen::VectorXd> configurations_argument(const py::handle& value, const std::string& name,
+                                                     Eigen::Index columns = -1);
+py::array_t<double> configuration_batch(const py::handle& value, const std::string& name, Eigen::Index columns);
 
 py::array_t<double> to_array(const Pose& T);
 py::array_t<double> to_array(const Poses& poses);                             ///< (m, 4, 4)

@@ -148,8 +148,7 @@ void bind_candidates(py::module_& m) {
       [](const Given<MeshShape>& mesh, const std::vector<int>& faces, const py::kwargs& keywords) {
         const auto options = read_options(assembly_grasp_fields(), keywords, "jaw_grasps");
         const MeshShape shape = taken(mesh, "mesh");
-        const py::gil_scoped_release release;
-        return jaw_grasps(*shape.mesh, faces, options);
+        return interruptible([&] { return jaw_grasps(*shape.mesh, faces, options); });
       },
       "mesh"_a, "faces"_a = std::vector<int>{},
       ("Grasps by two parallel jaws: opposite, nearly parallel facets of a segment (`faces`; none: the whole mesh) "
@@ -185,8 +184,7 @@ void bind_assembly(py::module_& m) {
         const AssemblyGrasp g = taken(grasp, "grasp");
         const AssemblyOperation o = taken(operation, "operation");
         const double taken_step = taken(step, "step");
-        const py::gil_scoped_release release;
-        return finger_length_range(g, o, taken_step);
+        return interruptible([&] { return finger_length_range(g, o, taken_step); });
       },
       "grasp"_a, "operation"_a, py::kw_only(), "step"_a = 0.0005,
       "The finger lengths with which neither fingers nor palm meet the subassemblies: on the approach, along the whole "

@@ -116,8 +116,7 @@ void bind_map(py::module_& m) {
           "load",
           [](const PathLike& path) {
             const std::string name = path_argument(path, "path");
-            py::gil_scoped_release release;
-            return CapabilityMap::load(name);
+            return interruptible([&] { return CapabilityMap::load(name); });
           },
           "path"_a, "Raises IoError on a truncated, foreign or corrupt folder.")
       .def_property_readonly(

@@ -100,11 +100,11 @@ void bind_answers(py::module_& m) {
 }
 
 Eigen::VectorXd configuration(const CollisionChecker& checker, const ArrayLike& q, const char* name) {
-  return vector_argument(q, name, checker.group().size());
+  return configuration_argument(q, name, checker.group().size());
 }
 
 py::array_t<bool> are_free_of_rows(const CollisionChecker& c, const ArrayLike& Q, int threads) {
-  const auto rows = batch_argument(Q, "Q", c.group().size());
+  const auto rows = configuration_batch(Q, "Q", c.group().size());
   const CollisionChecker own = c.clone();
   py::array_t<bool> out(rows.shape(0));
   bool* to = out.mutable_data();
@@ -132,8 +132,10 @@ void bind_checker(py::module_& m) {
                       const py::kwargs& options) {
             const JointGroup& group = taken(given_group, "group");
             check_same_robot(taken(robot, "robot"), group);
-            return CollisionChecker(with_sampled_pairs(group), taken(world, "world"),
-                                    read_options(checker_fields(), options, "CollisionChecker"));
+            const World& scene = taken(world, "world");
+            const CheckerOptions read = read_options(checker_fields(), options, "CollisionChecker");
+            const JointGroup paired = with_sampled_pairs(group);
+            return interruptible([&] { return CollisionChecker(paired, scene, read); });
           }),
           py::arg("robot"), py::arg("world"), py::arg("group"),
           ("For configurations of `group` of `robot` in `world` as it is now." + option_help(checker_fields())).c_str())

@@ -92,6 +92,10 @@ void bind_primitives(py::module_& m) {
       });
 }
 
+std::shared_ptr<const TriangleMesh> mesh_file(const std::string& path, const Eigen::Vector3d& scale) {
+  return interruptible([&] { return load_mesh(path, scale); });
+}
+
 void bind_mesh(py::module_& m) {
   py::class_<MeshShape>(m, "Mesh",
                         "A triangle mesh [m]; closed ones are solids, open ones surfaces.\n"
@@ -101,7 +105,7 @@ void bind_mesh(py::module_& m) {
       .def_static(
           "load",
           [](const PathLike& path, const ArrayLike& scale) {
-            return MeshShape{load_mesh(path_argument(path, "path"), scale_argument(scale))};
+            return MeshShape{mesh_file(path_argument(path, "path"), scale_argument(scale))};
           },
           py::arg("path"), py::arg("scale") = 1.0,
           "Reads STL, OBJ, DAE or PLY. `scale` is a number or one per axis. Raises IoError naming file and place.")
@@ -119,7 +123,7 @@ void bind_mesh(py::module_& m) {
                 face[i] = static_cast<int>(row[i]);
               }
             }
-            return MeshShape{make_mesh(points, faces)};
+            return MeshShape{interruptible([&] { return make_mesh(std::move(points), std::move(faces)); })};
           },
           py::arg("vertices"), py::arg("triangles"),
           "From vertices (n, 3) [m] and their numbers (m, 3), cleaned as a file's: equal vertices merge, triangles "
@@ -152,11 +156,7 @@ void bind_mesh(py::module_& m) {
 
 /// The stand-in with the names that a robot's report has.
 StandIn stand_in_dict(const MeshShape& mesh, double tolerance) {
-  MeshStandIn found;
-  {
-    py::gil_scoped_release release;
-    found = simplify_mesh(mesh.mesh, tolerance);
-  }
+  const MeshStandIn found = interruptible([&] { return simplify_mesh(mesh.mesh, tolerance); });
   LinkShape shape;
   shape.shape = found.shape;
   shape.T_link_shape = found.T_mesh_shape;
@@ -186,7 +186,7 @@ void bind_geometry(py::module_& m) {
             LinkShape out;
             out.mesh_path = out.mesh_uri = path_argument(path, "path");
             out.mesh_scale = scale_argument(scale);
-            out.shape = MeshShape{load_mesh(out.mesh_path, out.mesh_scale)};
+            out.shape = MeshShape{mesh_file(out.mesh_path, out.mesh_scale)};
             out.T_link_shape = pose_argument(pose, "pose");
             return out;
           },

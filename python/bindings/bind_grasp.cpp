@@ -143,8 +143,7 @@ void bind_grasp(py::module_& m) {
         const GraspSamplerOptions read = read_options(sampler_fields(), options, "sample_grasps");
         SampledGrasps sampled;
         {
-          py::gil_scoped_release release;
-          sampled = sample_grasps(object, gripper, read);
+          sampled = interruptible([&] { return sample_grasps(object, gripper, read); });
         }
         return py::make_tuple(std::move(sampled.grasps), sampled.too_wide);
       },
@@ -155,8 +154,7 @@ void bind_grasp(py::module_& m) {
       "sample_grasps",
       [](const std::vector<LinkShape>& object, const Hand& gripper, const py::kwargs& options) {
         const GraspSamplerOptions read = read_options(sampler_fields(), options, "sample_grasps");
-        py::gil_scoped_release release;
-        return sample_grasps(object, gripper, read).grasps;
+        return interruptible([&] { return sample_grasps(object, gripper, read).grasps; });
       },
       py::arg("object"), py::arg("gripper"),
       ("Antipodal grasps of a body given as a list of LinkShape (P1 3.4.1), best first." +

@@ -63,8 +63,7 @@ Hand read_hand(const Robot& robot, const std::string& tool_link, const std::stri
   if (closing) reading.closing = vector3_argument(*closing, "closing");
   reading.clearance = clearance;
   reading.postures = postures;
-  py::gil_scoped_release release;
-  return Hand::from_robot(robot, tool_link, reading);
+  return interruptible([&] { return Hand::from_robot(robot, tool_link, reading); });
 }
 
 }  // namespace

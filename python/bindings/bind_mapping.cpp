@@ -81,7 +81,11 @@ void bind_clouds(py::module_& m) {
         return "PointCloud(" + std::to_string(c.width) + " x " + std::to_string(c.height) + ")";
       });
   m.def(
-      "read_pcd", [](const PathLike& path) { return read_pcd(path_argument(path, "path")); }, py::arg("path"),
+      "read_pcd", [](const PathLike& path) { 
+        const std::string file = path_argument(path, "path");
+        return interruptible([&] { return read_pcd(file); });
+      },
+      py::arg("path"),
       "Reads a PCD file: ascii, binary or binary_compressed. Raises IoError naming file and rule.");
 }
 
@@ -118,8 +122,7 @@ void bind_images(py::module_& m) {
          const py::kwargs& options) {
         const RenderOptions read = read_options(render_fields(), options, "render_depth");
         const Pose T = pose_argument(T_world_camera, "T_world_camera");
-        py::gil_scoped_release release;
-        return render_depth(scene_argument(scene), camera, T, read);
+        return interruptible([&] { return render_depth(scene_argument(scene), camera, T, read); });
       },
       py::arg("scene"), py::arg("camera"), py::arg("T_world_camera"),
       ("The depth image of shapes whose poses are in the world: one ray a pixel, first surface in front of the "
@@ -166,8 +169,7 @@ void bind_images(py::module_& m) {
         const HeightMapOptions read = read_options(height_map_fields(), options, "make_height_map");
         const Pose T = pose_argument(T_world_map, "T_world_map");
         const Eigen::Vector2d extent = vector2_argument(size, "size");
-        py::gil_scoped_release release;
-        return make_height_map(image, T, extent, read);
+        return interruptible([&] { return make_height_map(image, T, extent, read); });
       },
       py::arg("image"), py::arg("T_world_map"), py::arg("size"),
       ("Resamples a depth image over a rectangle of `size` (x, y) [m] around a frame whose z points up." +
@@ -211,8 +213,7 @@ void bind_cuboids(py::module_& m) {
           throw InvalidInput("T_world_tray: needs tray_size");
         }
         const auto cloud = points_argument(points, "points");
-        py::gil_scoped_release release;
-        return fit_cuboids(cloud, read, tray, from);
+        return interruptible([&] { return fit_cuboids(cloud, read, tray, from); });
       },
       py::arg("points"), py::kw_only(), py::arg("T_world_tray") = py::none(), py::arg("tray_size") = py::none(),
       py::arg("wall") = KnownTray{}.wall, py::arg("up") = py::none(), py::arg("eye") = py::none(),

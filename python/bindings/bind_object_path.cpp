@@ -305,8 +305,7 @@ void bind_object_path(py::module_& m) {
         const P problem = taken(given_problem, "problem");
         const Grasp grasp = taken(given_grasp, "grasp");
         const ObjectPathOptions read = read_options(object_path_fields(), options, "follow_object_path");
-        py::gil_scoped_release release;
-        return follow_object_path(problem, grasp, read);
+        return interruptible([&] { return follow_object_path(problem, grasp, read); });
       },
       "problem"_a, "grasp"_a,
       ("The cheapest motion of the arm that carries the object through all poses with one grasp, over all arm\n"

@@ -169,8 +169,7 @@ void bind_optim(py::module_& m) {
       "shortest_visiting_tour",
       [](const ArrayLike& given) {
         const Eigen::MatrixXd lengths = matrix_argument(given, "lengths", -1, true);
-        py::gil_scoped_release release;
-        return shortest_visiting_tour(lengths);
+        return interruptible([&] { return shortest_visiting_tour(lengths); });
       },
       py::arg("lengths"),
       "Shortest way from start over all n stops to goal. `lengths` is (n + 2, n + 2): stops, start, goal; infinite: no "
@@ -180,8 +179,7 @@ void bind_optim(py::module_& m) {
       "cheapest_assignment",
       [](const ArrayLike& given) {
         const Eigen::MatrixXd costs = matrix_argument(given, "costs");
-        py::gil_scoped_release release;
-        return cheapest_assignment(costs);
+        return interruptible([&] { return cheapest_assignment(costs); });
       },
       py::arg("costs"), "A column of its own for each row of (n, n) so that the sum of costs is least.");
 
@@ -206,8 +204,7 @@ void bind_optim(py::module_& m) {
       "share_stops",
       [](const ArrayLike& given, const std::vector<double>& stop_times, int robots) {
         const Eigen::MatrixXd drive_times = matrix_argument(given, "drive_times", -1, true);
-        py::gil_scoped_release release;
-        return share_stops(drive_times, stop_times, robots);
+        return interruptible([&] { return share_stops(drive_times, stop_times, robots); });
       },
       py::arg("drive_times"), py::arg("stop_times"), py::arg("robots"),
       "Shares stops among robots so that the last is done as early as can be. `drive_times` is (n + 2 k, n + 2 k): "

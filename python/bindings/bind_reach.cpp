@@ -283,8 +283,7 @@ void bind_reach(py::module_& m) {
             const std::string name = path_argument(path, "path");
             const std::optional<JointGroup> group =
                 arm ? std::optional<JointGroup>(with_sampled_pairs(*arm)) : std::nullopt;
-            py::gil_scoped_release release;
-            return group ? ReachDatabase::load(name, *group) : ReachDatabase::load(name);
+            return interruptible([&] { return group ? ReachDatabase::load(name, *group) : ReachDatabase::load(name); });
           },
           py::arg("path"), py::arg("arm") = py::none(),
           "Raises IoError on a truncated, foreign or corrupt database, and on one built for another arm than `arm`.")

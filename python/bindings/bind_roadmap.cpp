@@ -74,8 +74,7 @@ void bind_roadmap(py::module_& m) {
           [](const PathLike& path, const Given<JointGroup>& given_group) {
             const JointGroup& group = taken(given_group, "group");
             const std::string file = path_argument(path, "path");
-            py::gil_scoped_release release;
-            return Roadmap::load(file, group);
+            return interruptible([&] { return Roadmap::load(file, group); });
           },
           "path"_a, "group"_a, "Raises IoError on a damaged file or one made for another robot, joints or limits.")
       .def(
@@ -94,7 +93,7 @@ void bind_roadmap(py::module_& m) {
           "near",
           [](const Roadmap& roadmap, const ArrayLike& q) {
             std::vector<int> out;
-            roadmap.near(vector_argument(q, "q", roadmap.group().size()), out);
+            roadmap.near(configuration_argument(q, "q", roadmap.group().size()), out);
             return out;
           },
           "q"_a, "Vertices a new configuration would be joined with, ascending.")

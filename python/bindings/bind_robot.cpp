@@ -81,8 +81,7 @@ Robot load_expanded(const std::string& urdf_path, const std::string& srdf_path, 
   };
   const auto origin = [](const std::string& path) { return path + (is_xacro(path) ? " (expanded)" : ""); };
   const std::string urdf = text(urdf_path), srdf = srdf_path.empty() ? "" : text(srdf_path);
-  py::gil_scoped_release release;
-  return Robot::from_strings(urdf, srdf, options, origin(urdf_path), origin(srdf_path));
+  return interruptible([&] { return Robot::from_strings(urdf, srdf, options, origin(urdf_path), origin(srdf_path)); });
 }
 
 RobotOptions robot_options(const py::object& package_dirs, const std::string& base, const py::object& base_limits,
@@ -238,8 +237,7 @@ void bind_robot_class(py::module_& m) {
             if (is_xacro(urdf_path) || is_xacro(srdf_path))
               return load_expanded(urdf_path, srdf_path, xacro_args, options);
             if (!xacro_args.is_none()) refuse_value("xacro_args", xacro_args, "None unless a file is called .xacro");
-            py::gil_scoped_release release;
-            return Robot::load(urdf_path, srdf_path, options);
+            return interruptible([&] { return Robot::load(urdf_path, srdf_path, options); });
           },
           py::arg("urdf"), py::arg("srdf") = py::none(), py::arg("package_dirs") = py::none(),
           py::arg("base") = "fixed", py::kw_only(), py::arg("base_limits") = py::none(), py::arg("load_meshes") = true,
@@ -257,8 +255,7 @@ void bind_robot_class(py::module_& m) {
              double mesh_tolerance, const std::string& origin) {
             const RobotOptions options =
                 robot_options(package_dirs, base, base_limits, load_meshes, allow_missing_meshes, mesh_tolerance);
-            py::gil_scoped_release release;
-            return Robot::from_strings(urdf, srdf, options, origin);
+            return interruptible([&] { return Robot::from_strings(urdf, srdf, options, origin); });
           },
           py::arg("urdf"), py::arg("srdf") = "", py::arg("package_dirs") = py::none(), py::arg("base") = "fixed",
           py::kw_only(), py::arg("base_limits") = py::none(), py::arg("load_meshes") = true,

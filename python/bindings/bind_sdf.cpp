@@ -195,8 +195,7 @@ void bind_sdf(py::module_& m) {
                 for (Eigen::Index u = 0; u < s.cols(); ++u) uncertainty.sigma.push_back(static_cast<float>(s(v, u)));
               }
             }
-            py::gil_scoped_release release;
-            return sdf.integrate(image, camera, uncertainty);
+            return interruptible([&] { return sdf.integrate(image, camera, uncertainty); });
           },
           "image"_a, "camera"_a, py::kw_only(), "pose_covariance"_a = py::none(), "sigma"_a = py::none(),
           "Adds a frame. `pose_covariance` (6, 6): of the error of T_world_camera, displacement [m] first, then\n"
@@ -288,8 +287,7 @@ void bind_sdf(py::module_& m) {
           "load",
           [](const PathLike& path, int threads) {
             const std::string file = path_argument(path, "path");
-            py::gil_scoped_release release;
-            return ProbabilisticSdf::load(file, threads);
+            return interruptible([&] { return ProbabilisticSdf::load(file, threads); });
           },
           "path"_a, "threads"_a = 0,
           "Reads what save() wrote. Raises IoError when it is no map, of another version, truncated or damaged.")

@@ -105,8 +105,7 @@ void bind_segmentation(py::module_& m) {
           require(directions.cols() == cloud.cols(), "normals", static_cast<double>(directions.cols()),
                   "must be one a point, " + std::to_string(cloud.cols()));
         }
-        py::gil_scoped_release release;
-        return segment_objects(cloud, directions, read, plane, from);
+        return interruptible([&] { return segment_objects(cloud, directions, read, plane, from); });
       },
       "points"_a, "normals"_a = py::none(), py::kw_only(), "plane"_a = py::none(), "up"_a = py::none(),
       "eye"_a = py::none(),
@@ -122,8 +121,7 @@ void bind_segmentation(py::module_& m) {
       "segment_depth_image",
       [](const DepthImage& image, const PlaneArgument& plane, const OptionalArray& up, const py::kwargs& options) {
         const ObjectSegmentationOptions read = segmentation_options(options, up, "segment_depth_image");
-        py::gil_scoped_release release;
-        return segment_depth_image(image, read, plane);
+        return interruptible([&] { return segment_depth_image(image, read, plane); });
       },
       "image"_a, py::kw_only(), "plane"_a = py::none(), "up"_a = py::none(),
       ("segment_objects for what one camera sees: labels are one a pixel, row by row, plane and bounds in the world." +

@@ -118,8 +118,7 @@ void bind_structure(py::module_& m) {
              const py::kwargs& options) {
             const int count = taken(given_count, "count");
             const PipeGraspOptions read = grasp_options(gripper, options, "sample_grasps");
-            py::gil_scoped_release release;
-            return sample_pipe_grasps(p, count, read).grasps;
+            return interruptible([&] { return sample_pipe_grasps(p, count, read).grasps; });
           },
           py::arg("count"), py::kw_only(), py::arg("gripper") = py::none(),
           ("Grasps drawn over the whole pipe, at most `count`, none nearer to another than the spacings. Axes are the"

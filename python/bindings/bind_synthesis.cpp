@@ -197,7 +197,7 @@ void bind_synthesis(py::module_& m) {
           count += static_cast<Eigen::Index>(joints.size());
         }
         return eigengrasp_hand(robot, tool_link, made,
-                               {name, vector_argument(open, "open", count), vector_argument(closed, "closed", count)},
+                               {name, configuration_argument(open, "open", count), configuration_argument(closed, "closed", count)},
                                vector3_argument(approach, "approach"));
       },
       "robot"_a, "tool_link"_a, "groups"_a, py::kw_only(), "open"_a, "closed"_a, "approach"_a = py::make_tuple(0, 0, 1),
@@ -225,7 +225,7 @@ void bind_synthesis(py::module_& m) {
         if (arm != nullptr) {
           const Eigen::VectorXd seed = arm_seed.is_none()
                                            ? Eigen::VectorXd((arm->sample_lower() + arm->sample_upper()) / 2)
-                                           : vector_argument(arm_seed, "arm_seed", arm->size());
+                                           : configuration_argument(arm_seed, "arm_seed", arm->size());
           reach = make_arm_reach(world ? with_sampled_pairs(*arm) : *arm, seed, world);
         }
         return LongCall(progress).run([&](const Monitor& monitor) {

@@ -146,7 +146,7 @@ void bind_problem(py::module_& m) {
                                        gripper,
                                        world,
                                        std::move(trays),
-                                       vector_argument(home, "home", arm.size()),
+                                       configuration_argument(home, "home", arm.size()),
                                        vector3_argument(start, "start"),
                                        vector3_argument(goal, "goal"),
                                        place_region,
@@ -255,7 +255,7 @@ void bind_picks(py::module_& m) {
                             world,
                             object,
                             std::move(grasps),
-                            vector_argument(home, "home", arm.size()),
+                            configuration_argument(home, "home", arm.size()),
                             {},
                             read_options(pick_fields(), options, "plan_object_pick")};
         if (!places.is_none()) problem.places = poses_argument(py::reinterpret_borrow<ArrayLike>(places), "places");

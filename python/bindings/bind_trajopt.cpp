@@ -296,7 +296,7 @@ DriveByGoal goal_argument(const ArrayLike& goal, Eigen::Index size) {
     if (box.rows() != 2) throw InvalidInput("goal: must be (n,), or (2, n) with lower and upper bounds");
     return {box.row(0).transpose(), box.row(1).transpose()};
   }
-  const Eigen::VectorXd q = vector_argument(goal, "goal", size);
+  const Eigen::VectorXd q = configuration_argument(goal, "goal", size);
   return {q, q};
 }
 
@@ -304,7 +304,7 @@ DriveByResult shorten(const JointGroup& group, const World& world, const std::ve
                       std::vector<double> times, const ArrayLike& positions, std::vector<double> task_times,
                       const Progress& progress, const py::kwargs& options) {
   const DriveByOptions read = read_options(drive_by_fields(), options, "shorten_drive_by");
-  const KnownMotion known{std::move(times), rows_argument(positions, "positions", group.size()), std::move(task_times)};
+  const KnownMotion known{std::move(times), configurations_argument(positions, "positions", group.size()), std::move(task_times)};
   const JointGroup with_pairs = with_sampled_pairs(group);
   return LongCall(progress).run(
       [&](const Monitor& monitor) { return shorten_drive_by(with_pairs, world, tasks, known, read, monitor); });
@@ -315,7 +315,7 @@ DriveByResult drive_by(const Robot& robot, const JointGroup& group, const World&
                        const py::kwargs& options) {
   check_same_robot(robot, group);
   const DriveByOptions read = read_options(drive_by_fields(), options, "plan_drive_by");
-  const Eigen::VectorXd from = vector_argument(start, "start", group.size());
+  const Eigen::VectorXd from = configuration_argument(start, "start", group.size());
   const DriveByGoal to = goal_argument(goal, group.size());
   const JointGroup with_pairs = with_sampled_pairs(group);
   return LongCall(progress).run(
@@ -334,7 +334,7 @@ void bind_trajopt(py::module_& m) {
          int waypoints) -> py::object {
         DriveByOptions options;
         options.waypoints = waypoints;
-        const Eigen::VectorXd from = vector_argument(start, "start", group.size());
+        const Eigen::VectorXd from = configuration_argument(start, "start", group.size());
         const auto first = first_drive_by_guess(group, from, tasks, goal_argument(goal, group.size()), options);
         if (!first) return py::none();
         std::vector<int> intervals;

@@ -227,8 +227,7 @@ void bind_path_check(py::module_& m) {
         check.bodies = bodies;
         check.other_joints = other_joints;
         check.allowed_collisions = allowed_collisions;
-        py::gil_scoped_release release;
-        return verify::check_path(check, joint_step);
+        return interruptible([&] { return verify::check_path(check, joint_step); });
       },
       py::arg("robot"), py::arg("joints"), py::arg("path"), py::arg("bodies"), py::kw_only(),
       py::arg("other_joints") = std::map<std::string, double>{},

@@ -1,6 +1,4 @@
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <set>
 
 #include "bindings.hpp"
@@ -21,7 +19,7 @@ using BodyShape = Shown<kBodyShape>;
 /// Occupied leaves of an OctoMap file: one Voxels shape for each leaf size, so that pruned leaves keep their size.
 std::vector<LinkShape> octree_shapes(const std::string& path) {
   std::vector<LinkShape> shapes;
-  for (const Voxels& voxels : load_octree(path)) {
+  for (const Voxels& voxels : interruptible([&] { return load_octree(path); })) {
     LinkShape shape;
     shape.shape = voxels;
     shapes.push_back(shape);
@@ -30,28 +28,11 @@ std::vector<LinkShape> octree_shapes(const std::string& path) {
 }
 
 /// The cells of a grid through the object's origin that hold a point.
-Voxels voxels_of_points(const Eigen::MatrixXd& points, double resolution) {
-  if (!(resolution > 0) || !std::isfinite(resolution)) {
-    throw InvalidInput("resolution = " + std::to_string(resolution) + ": must be > 0");
-  }
-  if (points.rows() == 0) throw InvalidInput("points has shape (0, 3): must hold at least one point");
-  const double largest = points.cwiseAbs().maxCoeff();
-  if (largest / resolution > 1e15) {
-    throw InvalidInput("resolution = " + std::to_string(resolution) + ": is too fine for points " +
-                       std::to_string(largest) + " m away");
-  }
-  std::vector<std::array<std::int64_t, 3>> cells(points.rows());
-  for (Eigen::Index i = 0; i < points.rows(); ++i) {
-    auto& cell = cells[i];
-    for (int k = 0; k < 3; ++k) cell[k] = static_cast<std::int64_t>(std::floor(points(i, k) / resolution));
-  }
-  std::sort(cells.begin(), cells.end());
-  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-  auto centres = std::make_shared<std::vector<Eigen::Vector3d>>();
-  for (const auto& cell : cells) {
-    centres->push_back(resolution * Eigen::Vector3d(cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5));
-  }
-  return Voxels{centres, resolution};
+Voxels voxels_of_points(const ArrayLike& given, double resolution) {
+  const Eigen::MatrixXd rows = matrix_argument(given, "points", 3);
+  std::vector<Eigen::Vector3d> points(rows.rows());
+  for (Eigen::Index i = 0; i < rows.rows(); ++i) points[i] = rows.row(i);
+  return interruptible([&] { return voxelize(points, resolution); });
 }
 
 WorldObject object_of(std::vector<LinkShape> shapes, const py::object& pose) {
@@ -135,8 +116,7 @@ void bind_world(py::module_& m) {
       .def(
           "add_points",
           [](World& w, const std::string& name, const ArrayLike& points, double resolution, const OptionalArray& pose) {
-            w.add(name, voxels_of_points(matrix_argument(points, "points", 3), resolution),
-                  pose_argument(pose, "pose"));
+            w.add(name, voxels_of_points(points, resolution), pose_argument(pose, "pose"));
           },
           py::arg("name"), py::arg("points"), py::arg("resolution"), py::arg("pose") = py::none(),
           "Points (m, 3) as the solid cells of edge `resolution` [m] that hold one.")

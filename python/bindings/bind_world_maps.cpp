@@ -52,8 +52,7 @@ OccupancyObstacleOptions occupancy_obstacle(const py::handle& unknown, const py:
 
 template <typename Map, typename Options>
 std::vector<Voxels> cells_without_gil(const Map& map, const Options& options) {
-  py::gil_scoped_release release;
-  return map.obstacle_cells(options);
+  return interruptible([&] { return map.obstacle_cells(options); });
 }
 
 const std::vector<OptionField<OccupancyOptions>>& occupancy_fields() {
@@ -87,8 +86,7 @@ void bind_occupancy(py::module_& m) {
       .def(
           "integrate",
           [](OccupancyMap& map, const DepthImage& image, const DepthCamera& camera) {
-            py::gil_scoped_release release;
-            return map.integrate(image, camera);
+            return interruptible([&] { return map.integrate(image, camera); });
           },
           "image"_a, "camera"_a,
           "Casts a ray through every measured pixel in range; every cell changes at most once. Raises InvalidInput,\n"
@@ -129,8 +127,7 @@ void bind_occupancy(py::module_& m) {
           [](const PathLike& path, const py::kwargs& options) {
             const OccupancyOptions read = read_options(occupancy_fields(), options, "OccupancyMap.load");
             const std::string file = path_argument(path, "path");
-            py::gil_scoped_release release;
-            return OccupancyMap::load(file, read);
+            return interruptible([&] { return OccupancyMap::load(file, read); });
           },
           "path"_a,
           ("Reads an OctoMap file, whose resolution replaces the one given. Raises IoError when it is missing, "

@@ -9,8 +9,10 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <type_traits>
 #include <utility>
 
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/monitor.hpp"
 #include "options.hpp"
 
@@ -35,6 +37,7 @@ class LongCall {
     std::optional<decltype(work(std::declval<const Monitor&>()))> result;
     std::exception_ptr error;
     std::thread thread([&] {
+      const detail::InterruptionScope scope(monitor_.stop);
       try {
         result.emplace(work(monitor_));
       } catch (...) {
@@ -70,6 +73,18 @@ class LongCall {
   bool done_ = false;
   std::optional<std::pair<std::string, double>> latest_;
 };
+
+/// Runs work that may take long and reports no progress, so that Ctrl-C ends it: what takes a Monitor by that, all other
+/// by detail::throw_if_interrupted(). Work must not touch Python's objects.
+template <typename Work>
+auto interruptible(Work&& work) {
+  return LongCall(py::none()).run([&](const Monitor& monitor) {
+    if constexpr (std::is_invocable_v<Work, const Monitor&>)
+      return work(monitor);
+    else
+      return work();
+  });
+}
 
 /// Registers with Python's atexit that long calls of other threads end before the interpreter does.
 void end_calls_at_exit();

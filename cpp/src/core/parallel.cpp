@@ -4,10 +4,12 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/error.hpp"
 
 namespace mmgrasp {
@@ -21,6 +23,7 @@ struct Loop {
   const std::function<void(std::size_t, int)>& work;
   const Monitor& monitor;
   const char* stage;
+  const CancelToken* interruption;  ///< Of the calling thread.
   std::atomic<std::size_t> next{0};
   std::atomic<std::size_t> done{0};
   std::atomic<bool> failed{false};
@@ -39,9 +42,16 @@ struct Loop {
     failed.store(true);
   }
 
+  void run_elsewhere(int worker) {
+    std::optional<detail::InterruptionScope> scope;
+    if (interruption != nullptr) scope.emplace(*interruption);
+    run(worker);
+  }
+
   void run(int worker) {
     double reported = -1;
     while (!failed.load(std::memory_order_relaxed) && !monitor.stopped()) {
+      if (interruption != nullptr && interruption->stopped()) break;
       const std::size_t item = next.fetch_add(1);
       if (item >= count) break;
       try {
@@ -70,16 +80,19 @@ int resolve_threads(int threads) {
 bool parallel_for(std::size_t count, int threads, const std::function<void(std::size_t, int)>& work,
                   const Monitor& monitor, const char* stage) {
   const int workers = static_cast<int>(std::min<std::size_t>(resolve_threads(threads), count));
-  Loop loop{count, work, monitor, stage};
+  Loop loop{count, work, monitor, stage, detail::interruption_token()};
   std::vector<std::thread> pool;
   try {
-    for (int worker = 1; worker < workers; ++worker) pool.emplace_back([&loop, worker] { loop.run(worker); });
+    for (int worker = 1; worker < workers; ++worker) pool.emplace_back([&loop, worker] { loop.run_elsewhere(worker); });
   } catch (...) {  // the system gives no more threads: go on with those that started
   }
   loop.run(0);
   for (std::thread& thread : pool) thread.join();
   if (loop.exception) std::rethrow_exception(loop.exception);
-  if (loop.done.load() < count) return false;
+  if (loop.done.load() < count) {
+    if (!monitor.stopped()) detail::throw_if_interrupted();  // nobody looks whether a silent loop was stopped
+    return false;
+  }
   monitor.report(stage, 1.0);
   return true;
 }

@@ -4,6 +4,7 @@
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
 
@@ -93,6 +94,7 @@ Pose checked_pose(const Eigen::Matrix4d& T, const std::string& field) {
   want(determinant > 0, " rotation determinant", determinant, "must be +1 (a mirror is no rotation)");
   const double last_row = (T.row(3) - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff();
   want(last_row <= 1e-9, " last row, distance from 0 0 0 1", last_row, "must be 0");
+  require_position(T.topRightCorner<3, 1>(), field);
   Pose pose = Pose::Identity();
   pose.linear() = R;
   pose.translation() = T.topRightCorner<3, 1>();

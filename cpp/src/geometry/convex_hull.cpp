@@ -6,6 +6,7 @@
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/geometry/detail/mesh_topology.hpp"
 #include "mmgrasp/geometry/mesh.hpp"
+#include "mmgrasp/core/detail/interruption.hpp"
 
 namespace mmgrasp {
 
@@ -29,6 +30,7 @@ class HullBuilder {
   bool build() {
     if (!start_tetrahedron()) return false;
     while (!pending_.empty()) {
+      poll_();
       const int f = pending_.back();
       pending_.pop_back();
       if (!faces_[f].alive || faces_[f].outside.empty()) continue;
@@ -52,6 +54,7 @@ class HullBuilder {
     for (std::size_t i = 0; i < faces_.size(); i += stride) {
       const Face& face = faces_[i];
       if (!face.alive) continue;
+      detail::throw_if_interrupted();
       for (const Eigen::Vector3d& p : points_) worst = std::max(worst, face.normal.dot(p) - face.offset);
     }
     return worst;
@@ -108,6 +111,7 @@ class HullBuilder {
 
   void distribute(const std::vector<int>& points, const std::vector<int>& faces) {
     for (const int p : points) {
+      poll_();
       double best = tolerance_;
       int owner = -1;
       for (const int f : faces) {
@@ -188,6 +192,7 @@ class HullBuilder {
   double tolerance_;
   std::vector<Face> faces_;
   std::vector<int> pending_;
+  detail::InterruptionPoll poll_{1024};
 };
 
 std::shared_ptr<const TriangleMesh> finish(const std::vector<Eigen::Vector3d>& points,

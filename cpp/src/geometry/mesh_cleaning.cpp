@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "mmgrasp/geometry/detail/mesh_topology.hpp"
+#include "mmgrasp/core/detail/interruption.hpp"
 
 namespace mmgrasp::detail {
 
@@ -31,7 +32,9 @@ int merge_vertices(std::vector<Eigen::Vector3d>& vertices, Triangles& triangles)
   std::unordered_map<Eigen::Vector3d, int, VectorHash> index_of;
   std::vector<Eigen::Vector3d> kept;
   std::vector<int> new_index(vertices.size());
+  InterruptionPoll poll;
   for (std::size_t i = 0; i < vertices.size(); ++i) {
+    poll();
     const Eigen::Vector3d v = vertices[i].array() + 0.0;  // -0 becomes 0, which hashes alike
     const auto [it, is_new] = index_of.emplace(v, static_cast<int>(kept.size()));
     if (is_new) kept.push_back(v);

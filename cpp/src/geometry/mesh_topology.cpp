@@ -1,4 +1,5 @@
 #include "mmgrasp/geometry/detail/mesh_topology.hpp"
+#include "mmgrasp/core/detail/interruption.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -15,18 +16,30 @@ struct HalfEdge {
   bool forward;        // runs from low to high
 };
 
+/// By low, high and triangle: counted into place by low, then each vertex's few are sorted.
 std::vector<HalfEdge> sorted_half_edges(const std::vector<std::array<int, 3>>& triangles) {
-  std::vector<HalfEdge> edges;
-  edges.reserve(3 * triangles.size());
+  int vertices = 0;
+  for (const auto& t : triangles) vertices = std::max({vertices, t[0] + 1, t[1] + 1, t[2] + 1});
+  std::vector<std::size_t> place(static_cast<std::size_t>(vertices) + 1, 0);  // where the edges of a vertex begin
+  for (const auto& t : triangles)
+    for (int k = 0; k < 3; ++k) ++place[std::min(t[k], t[(k + 1) % 3]) + 1];
+  std::partial_sum(place.begin(), place.end(), place.begin());
+  std::vector<std::size_t> next = place;
+  std::vector<HalfEdge> edges(3 * triangles.size());
+  InterruptionPoll poll;
   for (std::size_t t = 0; t < triangles.size(); ++t) {
+    poll();
     for (int k = 0; k < 3; ++k) {
-      const int a = triangles[t][k], b = triangles[t][(k + 1) % 3];
-      edges.push_back({std::min(a, b), std::max(a, b), static_cast<int>(t), k, a < b});
+      const int a = triangles[t][k], b = triangles[t][(k + 1) % 3], low = std::min(a, b);
+      edges[next[low]++] = {low, std::max(a, b), static_cast<int>(t), k, a < b};
     }
   }
-  std::sort(edges.begin(), edges.end(), [](const HalfEdge& a, const HalfEdge& b) {
-    return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
-  });
+  for (int v = 0; v < vertices; ++v) {
+    poll();
+    std::sort(edges.begin() + place[v], edges.begin() + place[v + 1], [](const HalfEdge& a, const HalfEdge& b) {
+      return std::tie(a.high, a.triangle) < std::tie(b.high, b.triangle);
+    });
+  }
   return edges;
 }
 
@@ -58,7 +71,9 @@ bool pair_up(const HalfEdge* begin, const HalfEdge* end, Neighbours& neighbours)
 bool find_neighbours(const std::vector<std::array<int, 3>>& triangles, Neighbours& neighbours) {
   const std::vector<HalfEdge> edges = sorted_half_edges(triangles);
   neighbours.assign(triangles.size(), {});
+  InterruptionPoll poll;
   for (std::size_t i = 0; i < edges.size();) {
+    poll();
     std::size_t end = i + 1;
     while (end < edges.size() && edges[end].low == edges[i].low && edges[end].high == edges[i].high) ++end;
     if (!pair_up(&edges[i], &edges[0] + end, neighbours)) return false;
@@ -72,11 +87,13 @@ bool make_consistent(std::vector<std::array<int, 3>>& triangles, const Neighbour
   std::vector<signed char> flip(triangles.size(), -1);
   shells.shell_of_triangle.assign(triangles.size(), -1);
   std::vector<int> stack;
+  InterruptionPoll poll;
   for (std::size_t seed = 0; seed < triangles.size(); ++seed) {
     if (flip[seed] >= 0) continue;
     flip[seed] = 0;
     stack.push_back(static_cast<int>(seed));
     while (!stack.empty()) {
+      poll();
       const int t = stack.back();
       stack.pop_back();
       shells.shell_of_triangle[t] = shells.count;
@@ -120,8 +137,10 @@ void orient_outwards(const std::vector<Eigen::Vector3d>& vertices, std::vector<s
   for (int s = 0; s < shells.count; ++s) {
     if ((volume[s] < 0) == all_reversed) continue;
     bool nested = false;
+    throw_if_interrupted();
     for (int o = 0; o < shells.count && !nested; ++o) {
       if (o == s || !bounds[o].contains(bounds[s])) continue;
+      throw_if_interrupted();
       int winding = 0;
       for (std::size_t t = 0; t < triangles.size(); ++t) {
         if (shells.shell_of_triangle[t] != o) continue;
@@ -147,7 +166,9 @@ bool locally_convex(const TriangleMesh& mesh, double tolerance) {
     const auto& tri = mesh.triangles[t];
     return (v[tri[1]] - v[tri[0]]).cross(v[tri[2]] - v[tri[0]]);
   };
+  InterruptionPoll poll;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    poll();
     const Eigen::Vector3d n = normal(static_cast<int>(t));
     for (int k = 0; k < 3; ++k) {
       const int other = neighbours[t][k].triangle;
@@ -204,7 +225,9 @@ Shells find_shells(const std::vector<std::array<int, 3>>& triangles) {
     return t;
   };
   const std::vector<HalfEdge> edges = sorted_half_edges(triangles);
+  InterruptionPoll poll;
   for (std::size_t i = 1; i < edges.size(); ++i) {
+    poll();
     if (edges[i].low != edges[i - 1].low || edges[i].high != edges[i - 1].high) continue;
     const int a = find(edges[i - 1].triangle), b = find(edges[i].triangle);
     parent[std::max(a, b)] = std::min(a, b);
@@ -229,6 +252,7 @@ bool is_convex(const TriangleMesh& mesh) {
   if (!locally_convex(mesh, tolerance)) return false;
   const std::size_t stride = 1 + mesh.triangles.size() * mesh.vertices.size() / 2'000'000;
   for (std::size_t i = 0; i < mesh.triangles.size(); i += stride) {
+    throw_if_interrupted();
     const auto& t = mesh.triangles[i];
     const Eigen::Vector3d& a = mesh.vertices[t[0]];
     const Eigen::Vector3d n = (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a);

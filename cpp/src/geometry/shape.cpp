@@ -4,6 +4,7 @@
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
 
@@ -16,8 +17,9 @@ struct Overloaded : Handlers... {
 template <class... Handlers>
 Overloaded(Handlers...) -> Overloaded<Handlers...>;
 
-void require_length(double value, const std::string& field) {
-  require(std::isfinite(value) && value > 0, field, value, "must be finite and > 0 [m]");
+// Read as a matrix, where they lie.
+Eigen::Map<const Eigen::Matrix3Xd> columns(const std::vector<Eigen::Vector3d>& points) {
+  return {points.empty() ? nullptr : points.front().data(), 3, static_cast<Eigen::Index>(points.size())};
 }
 
 Eigen::AlignedBox3d around(const Eigen::Vector3d& centre, const Eigen::Vector3d& half) {
@@ -44,27 +46,22 @@ void check_shape(const Shape& shape, const std::string& field) {
                  },
                  [&](const Capsule& s) {
                    require_length(s.radius, field + ".radius");
-                   require(std::isfinite(s.length) && s.length >= 0, field + ".length", s.length,
-                           "must be finite and >= 0 [m]");
+                   require_within(s.length, 0, kLargestLength, field + ".length", "m");
                  },
                  [&](const Plane& s) {
-                   require(std::isfinite(s.offset), field + ".offset", s.offset, "must be finite [m]");
+                   require_coordinate(s.offset, field + ".offset");
                    require(s.normal.allFinite() && std::abs(s.normal.norm() - 1) < 1e-6, field + ".normal length",
                            s.normal.norm(), "must be a unit vector");
                  },
                  [&](const MeshShape& s) {
                    require(s.mesh != nullptr, field + ".mesh", "null", "must be set");
                    require(!s.mesh->triangles.empty(), field + ".mesh", "0 triangles", "must hold at least one");
-                   for (const Eigen::Vector3d& v : s.mesh->vertices) {
-                     if (!v.allFinite()) require(false, field + ".mesh", "a vertex", "must be finite");
-                   }
+                   require_positions(columns(s.mesh->vertices), field + ".mesh vertex");
                  },
                  [&](const Voxels& s) {
                    require_length(s.resolution, field + ".resolution");
                    require(s.centres != nullptr, field + ".centres", "null", "must be set");
-                   for (const Eigen::Vector3d& c : *s.centres) {
-                     if (!c.allFinite()) require(false, field + ".centres", "a centre", "must be finite");
-                   }
+                   require_positions(columns(*s.centres), field + ".centres");
                  },
              },
              shape);

@@ -6,27 +6,32 @@
 #include <string>
 
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/geometry/octree.hpp"
+#include "mmgrasp/core/detail/interruption.hpp"
 
 namespace mmgrasp {
 
 Voxels voxelize(const std::vector<Eigen::Vector3d>& points, double resolution) {
-  require(std::isfinite(resolution) && resolution > 0, "resolution", resolution, "must be finite and > 0 [m]");
+  require_length(resolution, "resolution");
   require(!points.empty(), "points", "0", "must hold at least one");
   std::vector<std::array<std::int64_t, 3>> cells;
   cells.reserve(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     std::array<std::int64_t, 3> cell{};
     for (int k = 0; k < 3; ++k) {
-      const double at = std::floor(points[i][k] / resolution);
-      // Doubles number cells one by one up to 2^53.
-      require(std::abs(at) < 9e15, "points[" + std::to_string(i) + "][" + std::to_string(k) + "]", points[i][k],
-              "must be finite and within 9e15 cells of the origin");
-      cell[k] = static_cast<std::int64_t>(at);
+      // At most 1e15, and doubles number cells one by one up to 2^53.
+      if (!(std::abs(points[i][k]) <= kLargestLength))
+        require_coordinate(points[i][k], "points[" + std::to_string(i) + "][" + std::to_string(k) + "]");
+      cell[k] = static_cast<std::int64_t>(std::floor(points[i][k] / resolution));
     }
     cells.push_back(cell);
   }
-  std::sort(cells.begin(), cells.end());
+  detail::InterruptionPoll poll;
+  std::sort(cells.begin(), cells.end(), [&](const auto& a, const auto& b) {
+    poll();
+    return a < b;
+  });
   cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
   auto centres = std::make_shared<std::vector<Eigen::Vector3d>>();
   centres->reserve(cells.size());

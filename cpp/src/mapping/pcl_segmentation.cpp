@@ -2,16 +2,33 @@
 
 #include <pcl/filters/voxel_grid.h>
 #include <pcl/point_types.h>
+#include <pcl/sample_consensus/sac_model_perpendicular_plane.h>
+#include <pcl/sample_consensus/sac_model_plane.h>
 #include <pcl/search/kdtree.h>
 #include <pcl/segmentation/extract_clusters.h>
 #include <pcl/segmentation/sac_segmentation.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <string>
+
+#include "mmgrasp/core/detail/interruption.hpp"
+#include "mmgrasp/core/error.hpp"
 
 namespace mmgrasp::detail {
 namespace {
 
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;
+
+/// PCL keeps a number for each cell of the box around the points.
+void check_lattice(const std::vector<Eigen::Vector3d>& points, double leaf) {
+  constexpr double kMostCells = 1e8;
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& p : points) box.extend(p);
+  const double cells = (box.sizes() / leaf + Eigen::Vector3d::Ones()).prod();
+  require(cells <= kMostCells, "leaf", leaf,
+          "is too fine for points " + std::to_string(box.sizes().maxCoeff()) + " m apart: at most 1e8 cells [m]");
+}
 
 Cloud::Ptr to_pcl(const std::vector<Eigen::Vector3d>& points) {
   Cloud::Ptr cloud(new Cloud);
@@ -22,13 +39,57 @@ Cloud::Ptr to_pcl(const std::vector<Eigen::Vector3d>& points) {
   return cloud;
 }
 
+/// PCL's searches for planes ask for every plane that they try how many points lie on it.
+template <typename Model>
+class InterruptibleModel : public Model {
+ public:
+  using Model::Model;
+  std::size_t countWithinDistance(const Eigen::VectorXf& coefficients, const double threshold) const override {
+    throw_if_interrupted();
+    return Model::countWithinDistance(coefficients, threshold);
+  }
+};
+
+class PlaneSearch : public pcl::SACSegmentation<pcl::PointXYZ> {
+ public:
+  PlaneSearch() : SACSegmentation(false) {}  // not seeded from the clock
+
+ protected:
+  bool initSACModel(const int type) override {
+    if (type == pcl::SACMODEL_PLANE) {
+      model_.reset(new InterruptibleModel<pcl::SampleConsensusModelPlane<pcl::PointXYZ>>(input_, *indices_, random_));
+      return true;
+    }
+    using Perpendicular = InterruptibleModel<pcl::SampleConsensusModelPerpendicularPlane<pcl::PointXYZ>>;
+    pcl::shared_ptr<Perpendicular> model(new Perpendicular(input_, *indices_, random_));
+    model->setAxis(axis_);
+    model->setEpsAngle(eps_angle_);
+    model_ = model;
+    return true;
+  }
+};
+
+/// Clusters are grown by one look around each point.
+class InterruptibleTree : public pcl::search::KdTree<pcl::PointXYZ> {
+ public:
+  using pcl::search::KdTree<pcl::PointXYZ>::radiusSearch;
+  int radiusSearch(const pcl::PointXYZ& point, double radius, pcl::Indices& indices, std::vector<float>& squared,
+                   unsigned most = 0) const override {
+    poll_();
+    return pcl::search::KdTree<pcl::PointXYZ>::radiusSearch(point, radius, indices, squared, most);
+  }
+
+ private:
+  mutable InterruptionPoll poll_{64};
+};
+
 }  // namespace
 
 FoundPlane dominant_plane(const std::vector<Eigen::Vector3d>& points, double tolerance, int iterations,
                           const Eigen::Vector3d& axis, double angle) {
   FoundPlane out;
   if (points.size() < 3) return out;
-  pcl::SACSegmentation<pcl::PointXYZ> search(false);  // not seeded from the clock
+  PlaneSearch search;
   search.setMethodType(pcl::SAC_RANSAC);
   search.setModelType(axis.isZero() ? pcl::SACMODEL_PLANE : pcl::SACMODEL_PERPENDICULAR_PLANE);
   if (!axis.isZero()) {
@@ -55,6 +116,7 @@ std::vector<std::vector<int>> euclidean_clusters(const std::vector<Eigen::Vector
                                                  double leaf, int least) {
   std::vector<std::vector<int>> groups;
   if (points.empty()) return groups;
+  check_lattice(points, leaf);
   const Cloud::Ptr cloud = to_pcl(points);
   Cloud::Ptr thinned(new Cloud);
   pcl::VoxelGrid<pcl::PointXYZ> grid;
@@ -65,7 +127,7 @@ std::vector<std::vector<int>> euclidean_clusters(const std::vector<Eigen::Vector
 
   std::vector<pcl::PointIndices> found;
   pcl::EuclideanClusterExtraction<pcl::PointXYZ> search;
-  pcl::search::KdTree<pcl::PointXYZ>::Ptr tree(new pcl::search::KdTree<pcl::PointXYZ>);
+  const pcl::search::KdTree<pcl::PointXYZ>::Ptr tree(new InterruptibleTree);
   search.setClusterTolerance(tolerance);
   search.setMinClusterSize(1);
   search.setMaxClusterSize(static_cast<int>(thinned->size()));

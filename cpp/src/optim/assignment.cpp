@@ -5,6 +5,7 @@
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/detail/interruption.hpp"
 
 namespace mmgrasp {
 
@@ -23,6 +24,7 @@ std::vector<int> cheapest_assignment(const Eigen::MatrixXd& costs) {
     std::fill(slack.begin(), slack.end(), detail::kInfinity);
     std::fill(done.begin(), done.end(), 0);
     do {
+      detail::throw_if_interrupted();
       done[column] = 1;
       const std::size_t at = row_of[column];
       std::size_t next = 0;

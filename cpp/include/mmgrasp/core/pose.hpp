@@ -34,7 +34,7 @@ MMGRASP_EXPORT Vector6d pose_difference(const Pose& from, const Pose& to);
 /// Angle between two rotations [rad], in [0, pi].
 MMGRASP_EXPORT double rotation_distance(const Pose& a, const Pose& b);
 
-/// Throws InvalidInput naming `field` unless the matrix is finite, a rotation within 1e-6 and its last row 0 0 0 1.
+/// Throws InvalidInput naming `field` unless finite, a rotation within 1e-6, last row 0 0 0 1, position within 1e6 m.
 MMGRASP_EXPORT Pose checked_pose(const Eigen::Matrix4d& T, const std::string& field);
 
 /// Angle wrapped to (-pi, pi].

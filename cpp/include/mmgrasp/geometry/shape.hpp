@@ -48,7 +48,7 @@ struct Voxels {
 /// What a rigid body may be made of; each is placed by a pose beside it (LinkShape, World).
 using Shape = std::variant<Box, Sphere, Cylinder, Capsule, Plane, MeshShape, Voxels>;
 
-/// Throws InvalidInput naming `field` on a zero, negative, infinite or NaN dimension.
+/// Throws InvalidInput naming `field` on a dimension outside of [1e-9, 1e6] m or a point beyond (core/limits.hpp).
 MMGRASP_EXPORT void check_shape(const Shape& shape, const std::string& field);
 
 /// Axis-aligned bounds of the shape placed at T; infinite for a plane.

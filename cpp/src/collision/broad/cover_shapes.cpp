@@ -8,6 +8,7 @@
 #include "collision/narrow/solid.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/geometry/detail/triangle_distance.hpp"
+#include "mmgrasp/core/detail/interruption.hpp"
 
 namespace mmgrasp::detail {
 
@@ -28,6 +29,7 @@ std::pair<Eigen::Vector3d, double> small_sphere(const Points& points, int rounds
   Eigen::Vector3d centre = box.center(), best = centre;
   double radius = kInfinity;
   for (int i = 2; i < rounds + 2; ++i) {
+    throw_if_interrupted();
     const Eigen::Vector3d* farthest = &points.front();
     double squared = -1;
     for (const Eigen::Vector3d& p : points) {
@@ -87,7 +89,9 @@ std::vector<Points> cell_points(const TriangleMesh& mesh, const Grid& grid, cons
   std::vector<Points> cells(n[0] * n[1] * n[2]);
   const auto cell = [&](int i, int j, int k) -> Points& { return cells[(i * n[1] + j) * n[2] + k]; };
   Points polygon, scratch;
+  InterruptionPoll poll(256);
   for (const auto& t : mesh.triangles) {
+    poll();
     Eigen::AlignedBox3d box;
     for (const int corner : t) box.extend(mesh.vertices[corner]);
     int first[3], last[3];
@@ -290,7 +294,7 @@ void cover_cylinder(const Cylinder& cylinder, CoverLevels& levels) {
 void cover_capsule(const Capsule& capsule, CoverLevels& levels) {
   const double half = 0.5 * capsule.length, r = capsule.radius;
   for (const double end : {-half, half}) add_single(levels, {0, 0, end}, r, r);
-  const int slices = std::clamp(static_cast<int>(std::ceil(capsule.length / r)), 1, 24);
+  const int slices = static_cast<int>(std::clamp(std::ceil(capsule.length / r), 1.0, 24.0));
   const double step = capsule.length / slices;
   for (int i = 0; i < slices; ++i) add_single(levels, {0, 0, -half + (i + 0.5) * step}, std::hypot(r, 0.5 * step), r);
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
 
@@ -32,7 +33,7 @@ double Padding::most() const {
 
 void Padding::check() const {
   const auto check_one = [](double padding, const std::string& field) {
-    require(std::isfinite(padding) && padding >= 0, field, padding, "must be finite and >= 0 [m]");
+    require_within(padding, 0, kLargestLength, field, "m");
   };
   check_one(links, "padding.links");
   check_one(attached, "padding.attached");

@@ -1,4 +1,5 @@
 #include "collision/narrow/box_tree.hpp"
+#include "mmgrasp/core/detail/interruption.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -16,6 +17,7 @@ BoxTree::BoxTree(const std::vector<Eigen::AlignedBox3d>& boxes, int leaf_size) {
 
 // Halves at the median along the longest side of the centres' bounds: depth stays at log2 of the count.
 void BoxTree::build(int node, int begin, int end, int leaf_size, const std::vector<Eigen::AlignedBox3d>& boxes) {
+  if (end - begin > 1000) throw_if_interrupted();
   Eigen::AlignedBox3d bounds, centres;
   for (int i = begin; i < end; ++i) {
     bounds.extend(boxes[items_[i]]);

@@ -6,6 +6,7 @@
 
 #include "collision/narrow/solid.hpp"
 #include "mmgrasp/geometry/detail/triangle_distance.hpp"
+#include "mmgrasp/core/detail/interruption.hpp"
 
 namespace mmgrasp::detail {
 
@@ -30,7 +31,8 @@ void line_distances(std::vector<float>& line, std::vector<float>& out, std::vect
     float s = -std::numeric_limits<float>::infinity();
     while (k >= 0) {
       const int p = peak[k];
-      s = ((line[q] + static_cast<float>(q) * q) - (line[p] + static_cast<float>(p) * p)) / (2.0f * (q - p));
+      // In double precision: squares of long lines have more digits than a float.
+      s = static_cast<float>((double(line[q]) - line[p]) / (2.0 * (q - p)) + 0.5 * (double(q) + p));
       if (s > border[k]) break;
       --k;
     }
@@ -102,7 +104,9 @@ DistanceGrid::DistanceGrid(const std::vector<Eigen::Vector3d>& centres, double r
   std::array<int, 3> count{};
   for (int k = 0; k < 3; ++k) count[k] = static_cast<int>(std::ceil(body.sizes()[k] / step - 1e-6)) + 2 * kRoom;
   lay_out(body, body.min() - Eigen::Vector3d::Constant(kRoom * step), step, count, kVoxelQuanta);
+  InterruptionPoll poll(256);
   for (const Eigen::Vector3d& c : centres) {
+    poll();
     int first[3], last[3];
     bool aligned = true;
     for (int k = 0; k < 3; ++k) {
@@ -140,6 +144,7 @@ GridView DistanceGrid::view() const {
 }
 
 void DistanceGrid::mark(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
+  throw_if_interrupted();
   const Eigen::Vector3d p[3] = {(a - low_) / step_, (b - low_) / step_, (c - low_) / step_};  // in cells
   const Eigen::Vector3d low = p[0].cwiseMin(p[1]).cwiseMin(p[2]), high = p[0].cwiseMax(p[1]).cwiseMax(p[2]);
   const Eigen::Vector3d n = (p[1] - p[0]).cross(p[2] - p[0]);
@@ -181,10 +186,12 @@ void DistanceGrid::fill(const Solid& solid) {
   // Floods from each cell not seen yet; the first flood starts in a corner and is the outside.
   std::vector<char> seen(cells_.size(), 0);
   std::vector<std::array<int, 3>> stack;
+  InterruptionPoll poll;
   const auto flood = [&](int i, int j, int k, std::int8_t value) {
     stack.push_back({i, j, k});
     seen[index(i, j, k)] = 1;
     while (!stack.empty()) {
+      poll();
       const std::array<int, 3> at = stack.back();
       stack.pop_back();
       cells_[index(at[0], at[1], at[2])] = value;
@@ -217,6 +224,7 @@ void DistanceGrid::fill(const Solid& solid) {
 std::vector<float> DistanceGrid::centre_distances(const TriangleMesh& mesh, double band) const {
   std::vector<float> squared(cells_.size(), std::numeric_limits<float>::infinity());
   for (const auto& t : mesh.triangles) {
+    throw_if_interrupted();
     const Eigen::Vector3d &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
     const Eigen::Vector3d low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
     const Eigen::Vector3d middle = (a + b + c) / 3;
@@ -253,6 +261,7 @@ void DistanceGrid::spread_out(std::vector<float>& squared) const {
     std::vector<float> line(n), out(n), border(n + 1);
     std::vector<int> peak(n);
     for (int i = 0; i < count_[u]; ++i) {
+      throw_if_interrupted();
       for (int j = 0; j < count_[v]; ++j) {
         float* first = squared.data() + i * stride[u] + j * stride[v];
         for (int q = 0; q < n; ++q) line[q] = first[q * stride[axis]];
@@ -280,6 +289,7 @@ void DistanceGrid::measure_cells() {
   // Distances from cell to cell are those of their nearest corners: as if the others were grown by a cell all around.
   std::vector<float> squared(cells_.size(), 1e12f);
   for (int i = 0; i < count_[0]; ++i) {
+    throw_if_interrupted();
     for (int j = 0; j < count_[1]; ++j) {
       for (int k = 0; k < count_[2]; ++k) {
         if (cells_[index(i, j, k)] == kFree) continue;

@@ -11,6 +11,7 @@
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/geometry/detail/mesh_topology.hpp"
+#include "mmgrasp/core/detail/interruption.hpp"
 
 namespace mmgrasp::detail {
 
@@ -69,7 +70,9 @@ void set_mesh_bounds(Solid& solid, const TriangleMesh& mesh) {
 // at most the least, over faces, of the deepest corner.
 double deepest_concavity(const TriangleMesh& mesh, const std::vector<Eigen::Vector4d>& planes) {
   double deepest = 0;
+  InterruptionPoll poll(64);
   for (const auto& t : mesh.triangles) {
+    poll();
     double least = kInfinity;
     for (const Eigen::Vector4d& plane : planes) {
       double corner_depth = 0;
@@ -114,6 +117,7 @@ std::vector<Eigen::Vector3d> farthest_corners(const std::vector<Eigen::Vector3d>
   std::vector<char> taken(corners.size(), 0);
   std::vector<Eigen::Vector3d> out;
   for (int i = 0; i < kHullDirections; ++i) {
+    throw_if_interrupted();
     const double z = 1 - (2 * i + 1.0) / kHullDirections, r = std::sqrt(1 - z * z), turn = i * 2.399963229728653;
     const Eigen::Vector3d direction(r * std::cos(turn), r * std::sin(turn), z);
     std::size_t best = 0;
@@ -130,7 +134,9 @@ std::vector<Eigen::Vector3d> farthest_corners(const std::vector<Eigen::Vector3d>
 double farthest_outside(const std::vector<Eigen::Vector3d>& corners, const Convex& hull) {
   double farthest = 0;
   ConvexClearance clearance;
+  InterruptionPoll poll(64);
   for (const Eigen::Vector3d& corner : corners) {
+    poll();
     Convex point;
     point.centre = corner;
     Eigen::Vector3d axis = Eigen::Vector3d::Zero();
@@ -205,11 +211,14 @@ std::vector<Eigen::Vector3d> cell_groups(const std::vector<Eigen::Vector3d>& cel
     while (parent[i] != i) i = parent[i] = parent[parent[i]];
     return i;
   };
+  InterruptionPoll poll;
   for (std::size_t i = 0; i < cells.size(); ++i) {
+    poll();
     const auto [it, is_new] = index.emplace(key(cells[i]), static_cast<int>(i));
     if (!is_new) parent[i] = it->second;
   }
   for (const auto& [k, i] : index) {
+    poll();
     for (int n = 0; n < 13; ++n) {  // the others see this cell as their neighbour
       const auto it = index.find({k[0] + n % 3 - 1, k[1] + n / 3 % 3 - 1, k[2] + n / 9 - 1});
       if (it == index.end()) continue;

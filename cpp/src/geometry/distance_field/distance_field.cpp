@@ -3,18 +3,12 @@
 #include "geometry/hierarchy/triangle_tree.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
 namespace {
 
 using Eigen::Vector3d;
-
-void check_points(const Eigen::Matrix3Xd& points) {
-  if (points.allFinite()) return;
-  Eigen::Index i = 0;
-  while (points.col(i).allFinite()) ++i;
-  throw InvalidInput("point " + std::to_string(i) + ": must be finite");
-}
 
 }  // namespace
 
@@ -25,14 +19,14 @@ double DistanceField::distance(const Vector3d& point) const {
 }
 
 Eigen::VectorXd DistanceField::distances(const Eigen::Matrix3Xd& points) const {
-  check_points(points);
+  require_positions(points, "point");
   Eigen::VectorXd out(points.cols());
   evaluate(points, out, nullptr);
   return out;
 }
 
 Eigen::VectorXd DistanceField::distances(const Eigen::Matrix3Xd& points, Eigen::Matrix3Xd& gradients) const {
-  check_points(points);
+  require_positions(points, "point");
   Eigen::VectorXd out(points.cols());
   gradients.resize(3, points.cols());
   evaluate(points, out, &gradients);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
 
@@ -16,10 +17,12 @@ void GridDistanceField::Grid::check() const {
   require(values.size() == points, "values", static_cast<double>(values.size()),
           "must be as many as the grid has points (" + std::to_string(points) + ")");
   for (const double value : values)
-    require(!std::isinf(value), "values", value, "must be finite, or NaN where unknown");
-  require(origin.allFinite(), "origin", "not finite", "must be finite [m]");
-  require(std::isfinite(spacing) && spacing > 0, "spacing", spacing, "must be finite and > 0 [m]");
-  require(std::isfinite(error) && error >= 0, "error", error, "must be finite and not negative [m]");
+    require(!(std::abs(value) > kLargestLength), "values", value, "must be finite and within 1e6 m, or NaN where unknown");
+  require_position(origin, "origin");
+  require_length(spacing, "spacing");
+  for (const int count : size)
+    require(count * spacing <= kLargestLength, "spacing", spacing, "must keep the grid below 1e6 m");
+  require_within(error, 0, kLargestLength, "error", "m");
   require(truncation > 0, "truncation", truncation, "must be > 0 [m]");
 }
 

@@ -161,6 +161,7 @@ int TreeBuilder::add_packet(const Range& range) {
 }
 
 int TreeBuilder::build(const Range& whole, int depth) {
+  poll_();
   std::vector<Range> parts{whole};
   while (parts.size() < kTreeWidth) {
     int widest = -1;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "geometry/hierarchy/triangle_tree.hpp"
+#include "mmgrasp/core/detail/interruption.hpp"
 
 namespace mmgrasp::detail {
 
@@ -36,6 +37,7 @@ class TreeBuilder {
   TriangleTree& tree_;
   const TriangleMesh& mesh_;
   std::vector<Item> items_;
+  InterruptionPoll poll_{64};
 };
 
 }  // namespace mmgrasp::detail

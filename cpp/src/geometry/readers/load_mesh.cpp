@@ -6,6 +6,7 @@
 
 #include "geometry/readers/mesh_readers.hpp"
 #include "mmgrasp/core/detail/file_content.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
 
@@ -35,8 +36,8 @@ std::shared_ptr<const TriangleMesh> detail::parse_mesh(const std::string& path, 
   for (std::size_t i = 0; i < raw.vertices.size(); ++i) {
     if (!raw.vertices[i].allFinite()) detail::mesh_error(path, "vertex " + std::to_string(i) + " is not finite");
     raw.vertices[i] = raw.vertices[i].cwiseProduct(scale);
-    if (!(raw.vertices[i].cwiseAbs().maxCoeff() < 1e12)) {
-      detail::mesh_error(path, "vertex " + std::to_string(i) + " lies beyond 1e12 m (damaged?)");
+    if (!(raw.vertices[i].cwiseAbs().maxCoeff() <= kLargestLength)) {
+      detail::mesh_error(path, "vertex " + std::to_string(i) + " lies beyond 1e6 m (damaged?)");
     }
   }
   if (scale.prod() < 0) {  // A mirrored surface keeps its outside.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "geometry/mesh_cleaning.hpp"
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/geometry/mesh.hpp"
 
@@ -51,6 +52,7 @@ class WordReader {
   std::string_view text_;
   std::size_t position_ = 0;
   int line_ = 1;
+  InterruptionPoll poll_;
 };
 
 /// Parses the whole word as a number; false when it is none.

@@ -44,6 +44,7 @@ bool parse_integer(std::string_view word, long& value) {
 }
 
 std::string_view WordReader::next() {
+  poll_();
   while (position_ < text_.size() && is_blank(text_[position_])) {
     if (text_[position_] == '\n') ++line_;
     ++position_;

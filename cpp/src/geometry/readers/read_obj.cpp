@@ -62,6 +62,7 @@ class ObjReader {
   }
 
   void read_line(std::string_view line) {
+    poll_();
     const std::vector<std::string_view> words = split(line);
     if (words.empty() || words[0][0] == '#') return;
     if (words[0] == "v") {
@@ -114,6 +115,7 @@ class ObjReader {
   RawMesh mesh_;
   std::string continued_;
   int line_ = 0;
+  InterruptionPoll poll_;
 };
 
 }  // namespace

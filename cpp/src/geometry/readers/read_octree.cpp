@@ -10,6 +10,7 @@
 #include "geometry/readers/octree_reader.hpp"
 #include "mmgrasp/core/detail/file_content.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/detail/interruption.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -108,6 +109,7 @@ class OctreeReader {
   }
 
   void enter(const Cell& cell) {
+    poll_();
     if (cell.depth == kDepth) fail("has more than 16 levels (damaged)");
   }
 
@@ -155,6 +157,7 @@ class OctreeReader {
   long announced_ = -1;
   long nodes_ = 0;
   std::map<int, std::vector<Eigen::Vector3d>> leaves_;  // by depth
+  detail::InterruptionPoll poll_;
 };
 
 }  // namespace

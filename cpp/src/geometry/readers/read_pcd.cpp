@@ -8,6 +8,7 @@
 #include "geometry/readers/pcd_reader.hpp"
 #include "mmgrasp/core/detail/file_content.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/detail/interruption.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -195,6 +196,7 @@ class PcdReader {
   }
 
   void add(const double (&value)[4]) {
+    poll_();
     Eigen::Vector3d point(value[0], value[1], value[2]);
     if (!point.allFinite()) point.setConstant(std::numeric_limits<double>::quiet_NaN());
     cloud_.points.push_back(point);
@@ -286,6 +288,7 @@ class PcdReader {
   long point_bytes_ = 0, columns_ = 0;
   std::string data_;
   PointCloud cloud_;
+  detail::InterruptionPoll poll_;
 };
 
 }  // namespace

@@ -163,6 +163,7 @@ class PlyReader {
   }
 
   void read_record(const Element& element) {
+    poll_();
     const bool is_vertex = element.name == "vertex";
     Eigen::Vector3d vertex = Eigen::Vector3d::Zero();
     for (const Property& property : element.properties) {
@@ -186,6 +187,7 @@ class PlyReader {
   const std::string& path_;
   std::string_view content_;
   WordReader words_;
+  InterruptionPoll poll_;
   std::size_t at_ = 0;
   Encoding encoding_ = Encoding::ascii;
   std::vector<Element> elements_;

@@ -7,6 +7,7 @@
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/geometry/simplify_mesh.hpp"
+#include "mmgrasp/core/detail/interruption.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -35,7 +36,9 @@ class DeviationSearch {
   }
 
   double run(double limit) {
+    detail::InterruptionPoll poll(64);
     while (!cells_.empty()) {
+      poll();
       const double bound = std::max(cells_.top().bound, farthest_);
       if (farthest_ > limit) return detail::kInfinity;
       const bool kept = bound <= limit;

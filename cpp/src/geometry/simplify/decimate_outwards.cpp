@@ -7,6 +7,7 @@
 #include <queue>
 
 #include "geometry/hierarchy/triangle_tree.hpp"
+#include "mmgrasp/core/detail/interruption.hpp"
 
 namespace mmgrasp::detail {
 namespace {
@@ -113,6 +114,7 @@ class OutwardCollapse {
   }
 
   void offer(int a, int b) {
+    poll_();
     const std::vector<int> faces = star(a, b);
     if (!topology_allows(a, b, faces)) return;
     const std::optional<Collapse> found = best_target(a, b, faces);
@@ -267,6 +269,7 @@ class OutwardCollapse {
   std::vector<int> version_;              // of each vertex, raised when a triangle around it changes
   std::vector<bool> alive_;
   std::priority_queue<Collapse> queue_;
+  InterruptionPoll poll_{64};
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "geometry/simplify/decimate_outwards.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/detail/interruption.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -79,6 +80,7 @@ template <typename Vector>
 Vector sphere_centre(const std::vector<Vector>& points) {
   Vector centre = points.front();
   for (int step = 1; step <= kCentreSteps; ++step) {
+    detail::throw_if_interrupted();
     const auto farthest = std::max_element(points.begin(), points.end(), [&](const Vector& a, const Vector& b) {
       return (a - centre).squaredNorm() < (b - centre).squaredNorm();
     });
@@ -161,6 +163,7 @@ class PrimitiveFit {
   }
 
   void try_box(const Matrix3d& R) {
+    detail::throw_if_interrupted();
     Eigen::AlignedBox3d box;
     for (const Vector3d& v : mesh_.vertices) box.extend(R.transpose() * v);
     double deviation = 0;  // a convex function on a box is largest at a corner
@@ -215,6 +218,7 @@ std::shared_ptr<const TriangleMesh> hull_around(const TriangleMesh& mesh) {
   for (const auto& t : hull->triangles) {
     const Vector3d& a = hull->vertices[t[0]];
     const Vector3d n = (hull->vertices[t[1]] - a).cross(hull->vertices[t[2]] - a).normalized();
+    detail::throw_if_interrupted();
     for (const Vector3d& v : mesh.vertices)
       if (n.dot(v - a) > allowed) return nullptr;
   }
@@ -227,8 +231,11 @@ std::shared_ptr<const TriangleMesh> hull_around(const TriangleMesh& mesh) {
 bool holds_corners(const TriangleMesh& solid, const TriangleMesh& mesh) {
   const detail::TriangleTree tree(solid);
   const double allowed = kSameSolid * size_of(mesh.vertices);
-  return std::all_of(mesh.vertices.begin(), mesh.vertices.end(),
-                     [&](const Vector3d& v) { return tree.contains(v) || tree.distance(v) <= allowed; });
+  detail::InterruptionPoll poll(64);
+  return std::all_of(mesh.vertices.begin(), mesh.vertices.end(), [&](const Vector3d& v) {
+    poll();
+    return tree.contains(v) || tree.distance(v) <= allowed;
+  });
 }
 
 /// A mesh of fewer triangles around a closed one, when that saves a fair share of them.

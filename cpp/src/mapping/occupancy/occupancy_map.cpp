@@ -12,6 +12,7 @@
 #include "mapping/sdf/frame_checks.hpp"
 #include "mmgrasp/core/detail/file_content.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/geometry/octree.hpp"
 
 namespace mmgrasp {
@@ -173,10 +174,10 @@ OccupancyReport OccupancyMap::integrate(const DepthImage& image, const DepthCame
 }
 
 std::vector<Occupancy> OccupancyMap::states(const Eigen::Matrix3Xd& points) const {
+  require_positions(points, "point");
   std::vector<Occupancy> out;
   out.reserve(points.cols());
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    if (!points.col(i).allFinite()) throw InvalidInput("point " + std::to_string(i) + ": must be finite");
     const Eigen::Vector3d cell = (points.col(i) / impl_->options.resolution).array().floor() + kHalf;
     const bool inside = (cell.array() >= 0).all() && (cell.array() < 2 * kHalf).all();
     const octomap::OcTreeNode* node = nullptr;

@@ -11,6 +11,7 @@
 #include "mapping/sdf/sdf_sampler.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/core/parallel.hpp"
 
 namespace mmgrasp {
@@ -18,13 +19,6 @@ namespace {
 
 constexpr Eigen::Index kPointsOfItem = 4096, kRaysOfItem = 1024;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
-void check_columns(const Eigen::Matrix3Xd& columns, const char* name) {
-  if (columns.allFinite()) return;
-  Eigen::Index i = 0;
-  while (columns.col(i).allFinite()) ++i;
-  throw InvalidInput(std::string(name) + " " + std::to_string(i) + ": must be finite");
-}
 
 /// Calls work(first, last) for pieces of [0, count).
 template <typename Work>
@@ -69,7 +63,7 @@ IntegrationReport ProbabilisticSdf::integrate(const DepthImage& image, const Dep
 }
 
 SdfValues ProbabilisticSdf::query(const Eigen::Matrix3Xd& points, int threads) const {
-  check_columns(points, "point");
+  require_positions(points, "point");
   SdfValues out;
   out.mean.resize(points.cols());
   out.sigma.resize(points.cols());
@@ -93,8 +87,8 @@ SdfHits ProbabilisticSdf::cast_rays(const Eigen::Matrix3Xd& origins, const Eigen
                                     int threads) const {
   require(origins.cols() == directions.cols(), "directions", std::to_string(directions.cols()),
           "must be as many as origins, " + std::to_string(origins.cols()));
-  check_columns(origins, "origin");
-  check_columns(directions, "direction");
+  require_positions(origins, "origin");
+  require_positions(directions, "direction");
   for (Eigen::Index i = 0; i < directions.cols(); ++i) {
     if (directions.col(i).isZero(0)) throw InvalidInput("direction " + std::to_string(i) + ": must not be zero");
   }

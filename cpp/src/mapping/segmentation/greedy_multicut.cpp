@@ -1,4 +1,5 @@
 #include "mapping/segmentation/greedy_multicut.hpp"
+#include "mmgrasp/core/detail/interruption.hpp"
 
 #include <map>
 #include <queue>
@@ -34,7 +35,9 @@ class Contractor {
   }
 
   std::vector<int> parts() {
+    InterruptionPoll poll(64);
     while (!queue_.empty()) {
+      poll();
       const Contraction next = queue_.top();
       queue_.pop();
       const auto edge = around_[next.a].find(next.b);

@@ -4,6 +4,7 @@
 #include <unordered_map>
 
 #include "mmgrasp/core/detail/cell_key.hpp"
+#include "mmgrasp/core/detail/interruption.hpp"
 
 namespace mmgrasp::detail {
 
@@ -15,7 +16,9 @@ SurfaceCells surface_cells(const std::vector<Vector3d>& points, double leaf) {
   std::unordered_map<CellKey, int, CellKeyHash> cell_at;
   std::vector<CellKey> keys;
   std::vector<int> count;
+  InterruptionPoll poll;
   for (const Vector3d& p : points) {
+    poll();
     CellKey key;
     for (int k = 0; k < 3; ++k) key[k] = static_cast<std::int64_t>(std::floor(p[k] / leaf));
     const auto [entry, is_new] = cell_at.emplace(key, cells.size());
@@ -30,6 +33,7 @@ SurfaceCells surface_cells(const std::vector<Vector3d>& points, double leaf) {
   }
   cells.first_neighbour.push_back(0);
   for (int c = 0; c < cells.size(); ++c) {
+    poll();
     cells.position[c] /= count[c];
     for (int k = 0; k < 27; ++k) {
       const auto found = cell_at.find({keys[c][0] + k / 9 - 1, keys[c][1] + k / 3 % 3 - 1, keys[c][2] + k % 3 - 1});

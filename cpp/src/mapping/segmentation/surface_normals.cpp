@@ -6,6 +6,7 @@
 
 #include "mapping/segmentation/surface_cells.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
+#include "mmgrasp/core/detail/interruption.hpp"
 
 namespace mmgrasp::detail {
 namespace {
@@ -70,6 +71,7 @@ class NormalFitter {
  private:
   /// Plane through the cells in the window that hang together with the one in the middle.
   LocalPlane plane_around(int middle) {
+    poll_();
     const Vector3d origin = cells_.position[middle];
     Moments window;
     stack_.assign(1, middle);
@@ -108,6 +110,7 @@ class NormalFitter {
   std::vector<Moments> own_;
   std::vector<int> visited_;  ///< The last window that a cell was examined for.
   std::vector<int> stack_;
+  InterruptionPoll poll_{64};
 };
 
 }  // namespace

@@ -1,4 +1,5 @@
 #include "mapping/segmentation/surface_patches.hpp"
+#include "mmgrasp/core/detail/interruption.hpp"
 
 #include <queue>
 #include <tuple>
@@ -62,6 +63,7 @@ class PatchGrower {
 
   void flood() {
     while (!queue_.empty()) {
+      poll_();
       const Offer offer = queue_.top();
       queue_.pop();
       if (out_.patch_of[offer.cell] >= 0) continue;
@@ -93,6 +95,7 @@ class PatchGrower {
   SurfacePatches out_;
   std::vector<Vector3d> normal_;  ///< Sum over the patch's cells.
   std::vector<int> count_;
+  InterruptionPoll poll_{256};
   std::priority_queue<Offer, std::vector<Offer>, std::greater<Offer>> queue_;
 };
 

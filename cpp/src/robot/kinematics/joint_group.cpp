@@ -4,6 +4,7 @@
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/robot/detail/joint_group_data.hpp"
 
 namespace mmgrasp {
@@ -68,7 +69,8 @@ JointGroup JointGroup::with_reference(const Eigen::VectorXd& full_values) const 
   require(full_values.size() == expected, "full_values length", static_cast<double>(full_values.size()),
           "must be " + std::to_string(expected));
   for (Eigen::Index i = 0; i < full_values.size(); ++i)
-    require(std::isfinite(full_values[i]), "full_values[" + std::to_string(i) + "]", full_values[i], "must be finite");
+    require(std::abs(full_values[i]) <= kLargestLength, "full_values[" + std::to_string(i) + "]", full_values[i],
+            "must be finite and within 1e6");
   auto model = std::make_shared<detail::GroupModel>(*data_->model);
   model->reference = full_values;
   detail::flatten(*model);
@@ -134,8 +136,8 @@ void JointGroup::check_configuration(const Eigen::VectorXd& q, const std::string
   require(q.size() == size(), field + " length", static_cast<double>(q.size()),
           "must be " + std::to_string(size()) + " (group \"" + name() + "\")");
   for (Eigen::Index i = 0; i < q.size(); ++i)
-    require(std::isfinite(q[i]), field + "[" + std::to_string(i) + "]", q[i],
-            "must be finite (joint \"" + names()[i] + "\")");
+    require(std::abs(q[i]) <= kLargestLength, field + "[" + std::to_string(i) + "]", q[i],
+            "must be finite and within 1e6 (joint \"" + names()[i] + "\")");
 }
 
 }  // namespace mmgrasp

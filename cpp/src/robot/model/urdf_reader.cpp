@@ -10,11 +10,11 @@
 #include "mmgrasp/core/detail/near_name.hpp"
 #include "mmgrasp/core/detail/xml_document.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp::detail {
 namespace {
 
-constexpr double kLargest = 1e12;          // [m] or [rad]
 constexpr double kFallbackVelocity = 1.0;  // [rad/s] or [m/s], for joints whose file gives none
 constexpr std::array<JointType, 6> kJointTypes = {JointType::fixed,     JointType::revolute, JointType::continuous,
                                                   JointType::prismatic, JointType::planar,   JointType::floating};
@@ -80,8 +80,8 @@ class UrdfReader {
 
   /// Sums and products of what is read must stay finite.
   void check_size(const TiXmlElement& element, const char* attribute, double value) {
-    if (!(std::abs(value) < kLargest))
-      xml_.fail(element, std::string(attribute) + " = \"" + number_text(value) + "\": must be below 1e12 (damaged?)");
+    if (!(std::abs(value) <= kLargestLength))
+      xml_.fail(element, std::string(attribute) + " = \"" + number_text(value) + "\": must be within 1e6 (damaged?)");
   }
 
   Eigen::Vector3d read_vector(const TiXmlElement& element, const char* attribute, const Eigen::Vector3d& fallback) {
@@ -95,6 +95,8 @@ class UrdfReader {
     if (!(value > 0))
       xml_.fail(element, std::string(attribute) + " = \"" + number_text(value) + "\": must be positive");
     check_size(element, attribute, value);
+    if (value < kSmallestLength)
+      xml_.fail(element, std::string(attribute) + " = \"" + number_text(value) + "\": must be at least 1e-9 m");
     return value;
   }
 

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+
+#include "mmgrasp/core/export.hpp"
+
+namespace mmgrasp {
+
+/// No coordinate, size or distance [m] and no joint value [rad, m] that enters the library is larger: squares and
+/// products of lengths stay far from overflow, and coordinates are known to 1e-10 m. Checked where bodies, poses, maps
+/// and configurations come in, never in the queries themselves.
+inline constexpr double kLargestLength = 1e6;
+/// No dimension of a shape and no edge of a cell [m] is smaller.
+inline constexpr double kSmallestLength = 1e-9;
+
+/// Throws InvalidInput naming `field` unless the value lies in [kSmallestLength, kLargestLength].
+MMGRASP_EXPORT void require_length(double value, const std::string& field);
+/// Throws InvalidInput naming `field` unless the value lies within kLargestLength of 0.
+MMGRASP_EXPORT void require_coordinate(double value, const std::string& field);
+/// Throws InvalidInput naming `field` unless low <= value <= high; the unit is told with the rule.
+MMGRASP_EXPORT void require_within(double value, double low, double high, const std::string& field,
+                                   const std::string& unit);
+/// Throws InvalidInput naming `field` unless every coordinate lies within kLargestLength of 0.
+MMGRASP_EXPORT void require_position(const Eigen::Vector3d& position, const std::string& field);
+/// The same of many points, as columns; the message names the first that does not.
+MMGRASP_EXPORT void require_positions(const Eigen::Ref<const Eigen::Matrix3Xd>& positions, const std::string& field);
+
+}  // namespace mmgrasp

@@ -1,0 +1,41 @@
+#include "mmgrasp/core/limits.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+#include "mmgrasp/core/error.hpp"
+
+namespace mmgrasp {
+
+void require_length(double value, const std::string& field) {
+  require(value >= kSmallestLength && value <= kLargestLength, field, value,
+          "must be finite and > 0, in [1e-9, 1e6] m");
+}
+
+void require_coordinate(double value, const std::string& field) {
+  require(std::abs(value) <= kLargestLength, field, value, "must be finite and within 1e6 m");
+}
+
+void require_within(double value, double low, double high, const std::string& field, const std::string& unit) {
+  if (value >= low && value <= high) return;  // the message is put together for what is refused only
+  char rule[64];
+  std::snprintf(rule, sizeof(rule), "must be in [%.9g, %.9g]", low, high);
+  require(false, field, value, rule + (unit.empty() ? "" : " " + unit));
+}
+
+void require_position(const Eigen::Vector3d& position, const std::string& field) {
+  // Messages are put together for what is refused only.
+  for (int k = 0; k < 3; ++k) {
+    if (!(std::abs(position[k]) <= kLargestLength)) require_coordinate(position[k], field + "." + "xyz"[k]);
+  }
+}
+
+void require_positions(const Eigen::Ref<const Eigen::Matrix3Xd>& positions, const std::string& field) {
+  for (Eigen::Index i = 0; i < positions.cols(); ++i) {
+    // As one comparison: clouds have millions of points.
+    if (positions.col(i).cwiseAbs().maxCoeff() <= kLargestLength && !positions.col(i).hasNaN()) continue;
+    require_position(positions.col(i), field + " " + std::to_string(i));
+  }
+}
+
+}  // namespace mmgrasp

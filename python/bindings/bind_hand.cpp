@@ -23,7 +23,9 @@ void bind_hand_joint(py::module_& m) {
                         "A driven joint of a hand: how far it goes between closed and open [rad] or [m]. Joints of one "
                         "group move together.")
       .def(py::init([](std::string name, double closed, double open, std::string group) {
-             return HandJoint{std::move(name), closed, open, std::move(group)};
+             HandJoint joint{std::move(name), closed, open, std::move(group)};
+             joint.check("joint '" + joint.name + "'");
+             return joint;
            }),
            py::arg("name"), py::arg("closed"), py::arg("open"), py::arg("group") = HandJoint{}.group,
            "See the properties of the same names.")

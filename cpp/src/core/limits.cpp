@@ -19,7 +19,7 @@ void require_coordinate(double value, const std::string& field) {
 void require_within(double value, double low, double high, const std::string& field, const std::string& unit) {
   if (value >= low && value <= high) return;  // the message is put together for what is refused only
   char rule[64];
-  std::snprintf(rule, sizeof(rule), "must be in [%.9g, %.9g]", low, high);
+  std::snprintf(rule, sizeof(rule), "must be in [%g, %g]", low, high);
   require(false, field, value, rule + (unit.empty() ? "" : " " + unit));
 }
 

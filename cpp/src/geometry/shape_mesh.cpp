@@ -5,6 +5,7 @@
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/geometry/shape.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
 
@@ -109,7 +110,7 @@ std::shared_ptr<const TriangleMesh> voxel_mesh(const Voxels& voxels) {
 }  // namespace
 
 std::shared_ptr<const TriangleMesh> shape_mesh(const Shape& shape, int segments) {
-  require(segments >= 3, "segments", std::to_string(segments), "must be at least 3");
+  require_within(segments, 3, 10000, "segments", "");
   check_shape(shape, "shape");
   if (const auto* s = std::get_if<Box>(&shape)) return box_mesh(s->size);
   if (const auto* s = std::get_if<Sphere>(&shape)) return round_mesh(s->radius, 0, segments);

@@ -6,9 +6,13 @@
 
 namespace mmgrasp {
 
+constexpr double kMostPixels = 5e7;
+
 void PinholeCamera::check() const {
   require(width > 0, "camera.width", width, "must be positive");
   require(height > 0, "camera.height", height, "must be positive");
+  require(double(width) * height <= kMostPixels, "camera.width", width,
+          "times camera.height must be at most 50 million pixels");
   require(std::isfinite(fx) && fx > 0, "camera.fx", fx, "must be positive and finite");
   require(std::isfinite(fy) && fy > 0, "camera.fy", fy, "must be positive and finite");
   require(std::isfinite(cx), "camera.cx", cx, "must be finite");

@@ -8,6 +8,7 @@
 #include "mapping/plane_frame.hpp"
 #include "mapping/top_rectangle.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -16,13 +17,9 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 constexpr double kHalfPi = 1.57079632679489661923;
 
-void require_positive(double value, const char* field) {
-  require(std::isfinite(value) && value > 0, field, value, "must be positive and finite [m]");
-}
-
 void check_tray(const KnownTray& tray) {
   checked_pose(tray.T_world_tray.matrix(), "tray.T_world_tray");
-  for (int k = 0; k < 3; ++k) require_positive(tray.size[k], "tray.size");
+  for (int k = 0; k < 3; ++k) require_length(tray.size[k], "tray.size");
   require(std::isfinite(tray.wall) && tray.wall >= 0, "tray.wall", tray.wall, "must be zero or positive [m]");
   require(2 * tray.wall < tray.size.head<2>().minCoeff(), "tray.wall", tray.wall, "must leave room between the walls");
 }
@@ -34,7 +31,10 @@ class CuboidFitter {
       : points_(points), options_(options), eye_(eye) {
     fit_.labels.assign(points.size(), -2);
     for (std::size_t i = 0; i < points.size(); ++i) {
-      if (points[i].allFinite()) measured_.push_back(static_cast<int>(i));
+      if (!points[i].allFinite()) continue;
+      if (points[i].cwiseAbs().maxCoeff() > kLargestLength)
+        require_position(points[i], "points[" + std::to_string(i) + "]");
+      measured_.push_back(static_cast<int>(i));
     }
   }
 
@@ -166,13 +166,13 @@ class CuboidFitter {
 }  // namespace
 
 void CuboidFitOptions::check() const {
-  require_positive(plane_tolerance, "plane_tolerance");
+  require_length(plane_tolerance, "plane_tolerance");
   require(std::isfinite(wall_margin) && wall_margin >= 0, "wall_margin", wall_margin, "must be zero or positive [m]");
   require(up.allFinite(), "up", "not finite", "must be a direction, or zero for any plane");
   require(up_angle > 0 && up_angle <= kHalfPi, "up_angle", up_angle, "must be above 0 and at most pi/2 [rad]");
-  require_positive(max_height, "max_height");
-  require_positive(cluster_tolerance, "cluster_tolerance");
-  require_positive(leaf, "leaf");
+  require_length(max_height, "max_height");
+  require_length(cluster_tolerance, "cluster_tolerance");
+  require_length(leaf, "leaf");
   require(leaf < cluster_tolerance, "leaf", leaf,
           "must be less than cluster_tolerance, " + std::to_string(cluster_tolerance));
   require(min_points >= 8, "min_points", min_points, "must be at least 8");

@@ -8,6 +8,8 @@
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
+#include "mmgrasp/core/detail/interruption.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -19,6 +21,7 @@ constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 std::vector<float> nearest_around(const std::vector<float>& depth, int width, int height, bool only_holes) {
   std::vector<float> out = depth;
   for (int v = 0; v < height; ++v) {
+    detail::throw_if_interrupted();
     for (int u = 0; u < width; ++u) {
       float& z = out[static_cast<std::size_t>(v) * width + u];
       if (only_holes && z > 0) continue;
@@ -93,6 +96,7 @@ void paint_surface(const DepthImage& image, const std::vector<float>& depth, dou
     painter.paint(points[i], points[j], points[k]);
   };
   for (int v = 0; v + 1 < camera.height; ++v) {
+    detail::throw_if_interrupted();
     for (int u = 0; u + 1 < camera.width; ++u) {
       paint(pixel(u, v), pixel(u + 1, v), pixel(u, v + 1));
       paint(pixel(u + 1, v), pixel(u + 1, v + 1), pixel(u, v + 1));
@@ -104,7 +108,7 @@ void paint_surface(const DepthImage& image, const std::vector<float>& depth, dou
 
 void HeightMap::check() const {
   checked_pose(T_world_map.matrix(), "T_world_map");
-  require(std::isfinite(resolution) && resolution > 0, "map.resolution", resolution, "must be positive and finite [m]");
+  require_length(resolution, "map.resolution");
   require(nx > 0 && ny > 0, "map", std::to_string(nx) + " x " + std::to_string(ny) + " cells", "must have cells");
   const std::size_t cells = static_cast<std::size_t>(nx) * ny;
   require(height.size() == cells, "map.height", std::to_string(height.size()), "must be one a cell");
@@ -113,7 +117,7 @@ void HeightMap::check() const {
 }
 
 void HeightMapOptions::check() const {
-  require(std::isfinite(resolution) && resolution > 0, "resolution", resolution, "must be positive and finite [m]");
+  require_length(resolution, "resolution");
   require(hole_radius >= 0, "hole_radius", hole_radius, "must be zero or positive");
   require(jump > 0, "jump", jump, "must be positive [m]");
 }
@@ -137,7 +141,11 @@ HeightMap make_height_map(const DepthImage& image, const Pose& T_world_map, cons
   DepthImage clean = image;
   clean.clean();
   const int width = image.camera.width, height = image.camera.height;
-  for (int i = 0; i < options.hole_radius; ++i) clean.depth = nearest_around(clean.depth, width, height, true);
+  for (int i = 0; i < options.hole_radius; ++i) {
+    std::vector<float> filled = nearest_around(clean.depth, width, height, true);
+    if (filled == clean.depth) break;  // no hole is left, or nothing around it
+    clean.depth = std::move(filled);
+  }
   const Pose T_map_camera = map.T_world_map.inverse(Eigen::Isometry) * image.T_world_camera;
   paint_surface(image, clean.depth, options.jump, T_map_camera, map, map.height);
   paint_surface(image, nearest_around(clean.depth, width, height, false), detail::kInfinity, T_map_camera, map,

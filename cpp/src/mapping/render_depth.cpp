@@ -138,7 +138,7 @@ void disturb(DepthImage& image, const RenderOptions& options, int v) {
 void RenderOptions::check() const {
   require(std::isfinite(noise) && noise >= 0, "noise", noise, "must be zero or positive and finite [m]");
   require(missing >= 0 && missing <= 1, "missing", missing, "must be in [0, 1]");
-  require(threads >= 0, "threads", threads, "must be zero or positive");
+  resolve_threads(threads);  // says what is wrong
 }
 
 DepthImage render_depth(const std::vector<PlacedShape>& scene, const PinholeCamera& camera, const Pose& T_world_camera,

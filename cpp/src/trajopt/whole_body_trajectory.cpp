@@ -8,8 +8,18 @@
 #include "mmgrasp/robot/base_motion.hpp"
 #include "mmgrasp/trajopt/whole_body_problem.hpp"
 #include "trajopt/unicycle_arc.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
+namespace {
+
+/// Samples between two of so many waypoints, so that all together stay small beside memory.
+double most_between(std::size_t waypoints) {
+  constexpr double kMostSamples = 1e6;
+  return std::floor(kMostSamples / static_cast<double>(waypoints));
+}
+
+}  // namespace
 namespace {
 
 using Eigen::VectorXd;
@@ -72,7 +82,7 @@ VectorXd WholeBodyTrajectory::at(double time) const {
 }
 
 std::vector<VectorXd> WholeBodyTrajectory::rolled_out(int steps) const {
-  require(steps > 0, "steps", steps, "must be positive");
+  require_within(steps, 1, most_between(times_.size()), "steps", "between two waypoints");
   std::vector<VectorXd> result{positions_.front()};
   VectorXd q = positions_.front();
   for (std::size_t i = 0; i + 1 < times_.size(); ++i) {
@@ -92,7 +102,7 @@ std::vector<VectorXd> WholeBodyTrajectory::rolled_out(int steps) const {
 }
 
 JointTrajectory WholeBodyTrajectory::sampled(int between) const {
-  require(between >= 0, "between", between, "must be at least 0");
+  require_within(between, 0, most_between(times_.size()), "between", "samples between two waypoints");
   JointTrajectory result;
   result.names = group_.names();
   const bool diff_drive = moving_base(group_) == BaseKind::diff_drive;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/parallel.hpp"
 #include "verify/compare_robots.hpp"
 #include "verify/context.hpp"
 
@@ -117,7 +118,7 @@ void PlanCheckOptions::check() const {
   require(required_rate > 0 && required_rate <= 1, "required_rate", required_rate, "must be in (0, 1]");
   require(samples <= 1000000, "samples", samples, "must be at most 1000000");
   require(region_samples >= 0 && region_samples <= 100000, "region_samples", region_samples, "must be in [0, 100000]");
-  require(threads >= 0, "threads", threads, "must be 0 (all) or positive");
+  resolve_threads(threads);  // says what is wrong
 }
 
 PlanCheckResult check_plan(const PlanToCheck& plan, const PlanCheckOptions& options, const Monitor& monitor) {

@@ -28,6 +28,7 @@ struct MMGRASP_EXPORT HandJoint {
   double closed = 0;              ///< Value while the fingers are closed [rad] or [m].
   double open = 0;                ///< Value while they are open.
   std::string group = "fingers";  ///< Joints of one group move together.
+  void check(const std::string& field) const;
 };
 
 /// Boxes around the fingers and the palm; what lies between the fingers follows from Hand's opening and pads.

@@ -94,7 +94,7 @@ class Sampler {
 void DisabledPairsOptions::check() const {
   require(samples > 0, "samples", std::to_string(samples), "must be > 0");
   require(always_fraction > 0 && always_fraction <= 1, "always_fraction", always_fraction, "must be in (0, 1]");
-  require(threads >= 0, "threads", std::to_string(threads), "must be >= 0 (0: all)");
+  resolve_threads(threads);  // says what is wrong
 }
 
 Robot compute_disabled_pairs(const Robot& robot, const DisabledPairsOptions& options, const Monitor& monitor) {

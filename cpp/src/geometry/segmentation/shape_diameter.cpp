@@ -124,7 +124,7 @@ void ShapeDiameterOptions::check() const {
   require(rays >= 1 && rays <= 1000, "rays", rays, "must be from 1 to 1000");
   require(cone > 0 && cone < detail::kPi, "cone", cone, "must be above 0 and below pi rad");
   require(outlier > 0 && std::isfinite(outlier), "outlier", outlier, "must be positive and finite");
-  require(threads >= 0, "threads", threads, "must be 0 (all) or more");
+  resolve_threads(threads);  // says what is wrong
 }
 
 std::vector<double> shape_diameters(const TriangleMesh& mesh, const ShapeDiameterOptions& options,

@@ -163,7 +163,7 @@ void GraspabilityOptions::check() const {
   require(min_contact > 0 && min_contact <= 1, "min_contact", min_contact, "must be above 0 and at most 1");
   not_negative(min_distance, "min_distance");
   require(max_grasps > 0, "max_grasps", max_grasps, "must be positive");
-  require(threads >= 0, "threads", threads, "must be zero or positive");
+  resolve_threads(threads);  // says what is wrong
 }
 
 Graspability evaluate_graspability(const HeightMap& map, const Hand& hand, const GraspabilityOptions& options,

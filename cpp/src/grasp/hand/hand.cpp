@@ -23,14 +23,22 @@ void check_positive(double value, const std::string& field) {
   require(std::isfinite(value) && value > 0, field, value, "must be positive and finite [m]");
 }
 
+}  // namespace
+
+void HandJoint::check(const std::string& field) const {
+  require(std::isfinite(closed), field + ".closed", closed, "must be finite");
+  require(std::isfinite(open), field + ".open", open, "must be finite");
+}
+
+namespace {
+
 void check_joints(const std::vector<HandJoint>& joints) {
   std::set<std::string> names;
   for (const HandJoint& joint : joints) {
     require(!joint.name.empty(), "hand.joints", "\"\"", "a joint needs a name");
     require(names.insert(joint.name).second, "hand.joints", joint.name, "each joint may be listed once");
     const std::string field = "hand.joints." + joint.name;
-    require(std::isfinite(joint.closed), field + ".closed", joint.closed, "must be finite");
-    require(std::isfinite(joint.open), field + ".open", joint.open, "must be finite");
+    joint.check(field);
     require(!joint.group.empty(), field + ".group", "\"\"", "must have a name");
   }
 }

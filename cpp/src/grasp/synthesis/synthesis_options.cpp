@@ -58,7 +58,7 @@ void SynthesisOptions::check() const {
           "must be in [0, 10] [m]");
   not_negative(min_distance, "min_distance");
   require(max_grasps > 0, "max_grasps", max_grasps, "must be positive");
-  require(threads >= 0, "threads", threads, "must be zero or positive");
+  resolve_threads(threads);  // says what is wrong
   success.check();
   patch.check();
 }

@@ -9,6 +9,7 @@
 #include "mapping/segmentation/supporting_plane.hpp"
 #include "mapping/top_rectangle.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -17,8 +18,6 @@ using Eigen::Matrix3Xd;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 constexpr double kHalfPi = 1.57079632679489661923;
-/// Farther points would not have cells of their own [m].
-constexpr double kFarthest = 1e6;
 /// On a surface whose points are closer than a cell is wide, most cells have more neighbours than this.
 constexpr int kFewNeighbours = 3;
 
@@ -31,11 +30,11 @@ class ObjectSegmenter {
     out_.labels.assign(points.cols(), -2);
     for (int i = 0; i < points.cols(); ++i) {
       if (!points.col(i).allFinite()) continue;
-      const std::string field = "points[" + std::to_string(i) + "]";
-      require(points.col(i).cwiseAbs().maxCoeff() <= kFarthest, field, points.col(i).cwiseAbs().maxCoeff(),
-              "must lie within 1e6 m of the origin");
-      require(normals.cols() == 0 || normals.col(i).allFinite(), "normals[" + std::to_string(i) + "]", "not finite",
-              "must be a direction where the point is finite");
+      if (points.col(i).cwiseAbs().maxCoeff() > kLargestLength)
+        require_position(points.col(i), "points[" + std::to_string(i) + "]");
+      if (normals.cols() > 0 && !normals.col(i).allFinite())
+        require(false, "normals[" + std::to_string(i) + "]", "not finite",
+                "must be a direction where the point is finite");
       measured_.push_back(i);
     }
   }

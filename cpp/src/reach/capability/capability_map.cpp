@@ -6,6 +6,7 @@
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/hash.hpp"
+#include "mmgrasp/core/parallel.hpp"
 #include "reach/capability/capability_data.hpp"
 
 namespace mmgrasp {
@@ -39,7 +40,7 @@ void CapabilityOptions::check() const {
   require(sweeps >= 0, "sweeps", sweeps, "must not be negative");
   require(restarts >= 0, "restarts", restarts, "must not be negative");
   require(std::isfinite(padding) && padding >= 0, "padding", padding, "must be finite and >= 0 [m]");
-  require(threads >= 0, "threads", threads, "must not be negative");
+  resolve_threads(threads);  // says what is wrong
 }
 
 namespace detail {

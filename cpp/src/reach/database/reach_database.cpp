@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/parallel.hpp"
 #include "reach/database/reach_data.hpp"
 
 namespace mmgrasp {
@@ -58,7 +59,7 @@ void ReachOptions::check() const {
   require(min_manipulability >= 0 && min_manipulability < 1, "min_manipulability", min_manipulability,
           "must lie in [0, 1)");
   require(thinning >= 0 && thinning <= 1, "thinning", thinning, "must lie in [0, 1]");
-  require(threads >= 0, "threads", threads, "must be 0 (all) or positive");
+  resolve_threads(threads);  // says what is wrong
 }
 
 ReachDatabase::ReachDatabase(std::shared_ptr<const Data> data) : data_(std::move(data)) {}

@@ -81,7 +81,7 @@ void ReachSolveOptions::check() const {
   require(count > 0, "count", count, "must be positive");
   require(candidates > 0, "candidates", candidates, "must be positive");
   require(distinct >= 0 && std::isfinite(distinct), "distinct", distinct, "must be finite and >= 0 [rad or m]");
-  require(threads >= 0, "threads", threads, "must be 0 (all) or positive");
+  resolve_threads(threads);  // says what is wrong
   ik.check();
 }
 

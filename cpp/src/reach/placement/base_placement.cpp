@@ -321,7 +321,7 @@ void BasePlacementOptions::check() const {
   require(candidates > 0, "candidates", candidates, "must be positive");
   require(seeds > 0, "seeds", seeds, "must be positive");
   require(refinements >= 0, "refinements", refinements, "must be >= 0");
-  require(threads >= 0, "threads", threads, "must be 0 (all) or positive");
+  resolve_threads(threads);  // says what is wrong
   ik.check();
 }
 

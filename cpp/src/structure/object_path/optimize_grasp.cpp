@@ -6,6 +6,7 @@
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/detail/stopwatch.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/parallel.hpp"
 #include "structure/bound/ik_enclosure.hpp"
 #include "structure/object_path/branch_and_bound.hpp"
 #include "structure/object_path/grasp_front.hpp"
@@ -49,7 +50,7 @@ void GraspSearchOptions::check() const {
   require(max_boxes > 0, "max_boxes", max_boxes, "must be positive");
   require(time_limit > 0, "time_limit", time_limit, "must be positive [s]");
   require(front_searches >= 0, "front_searches", front_searches, "must not be negative");
-  require(threads >= 0, "threads", threads, "must not be negative");
+  resolve_threads(threads);  // says what is wrong
   population.check();
   grasp.check();
 }

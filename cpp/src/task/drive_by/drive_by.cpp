@@ -6,9 +6,11 @@
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/parallel.hpp"
 #include "task/drive_by/drive_by_assignments.hpp"
 #include "task/drive_by/drive_by_events.hpp"
 #include "task/drive_by/drive_by_solve.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -203,7 +205,7 @@ class DriveBy {
 }  // namespace
 
 void DriveByOptions::check() const {
-  require(waypoints >= 2, "waypoints", waypoints, "must be at least 2");
+  require_within(waypoints, 2, 1000, "waypoints", "");
   require(seeds > 0, "seeds", seeds, "must be positive");
   require(solutions > 0, "solutions", solutions, "must be positive");
   require(grasp_assignments > 0, "grasp_assignments", grasp_assignments, "must be positive");
@@ -211,7 +213,7 @@ void DriveByOptions::check() const {
   require(iterations > 0, "iterations", iterations, "must be positive");
   require(time_limit > 0, "time_limit", time_limit, "must be positive");
   require(jerk_time >= 0 && std::isfinite(jerk_time), "jerk_time", jerk_time, "must be at least 0");
-  require(threads >= 0, "threads", threads, "must be at least 0");
+  resolve_threads(threads);  // says what is wrong
   trajectory.check();
 }
 

@@ -3,9 +3,9 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 #include <set>
-#include <sstream>
 
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -16,12 +16,6 @@ void require_positive(double value, const std::string& field) {
 
 void require_not_negative(double value, const std::string& field) {
   require(std::isfinite(value) && value >= 0, field, value, "must be finite and not negative");
-}
-
-void require_within(double value, double least, double most, const std::string& field, const std::string& unit) {
-  std::ostringstream rule;
-  rule << "must be in [" << least << ", " << most << "] " << unit;
-  require(value >= least && value <= most, field, value, rule.str());  // false for NaN
 }
 
 void check_part(const Part& part, const std::string& tray) {

@@ -206,6 +206,7 @@ void bind_cuboids(py::module_& m) {
         CuboidFitOptions read = read_options(cuboid_fields(), options, "fit_cuboids");
         if (!up.is_none()) read.up = vector3_argument(up, "up");
         const Eigen::Vector3d from = eye.is_none() ? Eigen::Vector3d::Zero() : vector3_argument(eye, "eye");
+        finite_argument(wall, "wall");  // also where no tray is given that has one
         std::optional<KnownTray> tray;
         if (!tray_size.is_none()) {
           tray = KnownTray{pose_argument(T_world_tray, "T_world_tray"), vector3_argument(tray_size, "tray_size"), wall};

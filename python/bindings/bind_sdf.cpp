@@ -93,7 +93,12 @@ void bind_depth_camera(py::module_& m) {
           "z^2 disparity_sigma / (focal baseline): `focal` and `disparity_sigma` in pixels, `baseline` [m], as\n"
           "in Khoshelham and Elberink, Sensors 12(2), 2012.")
       .def_static("time_of_flight", &time_of_flight_noise, "The second Kinect: Fankhauser et al., ICAR 2015.")
-      .def("sigma", &DepthNoise::sigma, "depth"_a, "incidence"_a = 0.0,
+      .def(
+          "sigma",
+          [](const DepthNoise& noise, double depth, double incidence) {
+            return noise.sigma(finite_argument(depth, "depth"), finite_argument(incidence, "incidence"));
+          },
+          "depth"_a, "incidence"_a = 0.0,
            "Standard deviation [m] at a depth [m] and an angle of incidence in [0, pi/2) [rad].")
       .def_readonly("constant", &DepthNoise::constant, "[m]")
       .def_readonly("linear", &DepthNoise::linear, "Per metre of depth.")

@@ -11,6 +11,7 @@ import numpy as np
 import mmgrasp as mg
 from conftest import REPOSITORY
 from mmgrasp.grippers.turned_parts import block
+from mmgrasp.reproduce.drive_by import GOAL, START, whole_body
 
 CORPUS = REPOSITORY / "tests" / "fuzz" / "corpus"
 URDF = """<robot name="r"><link name="o"/>
@@ -74,6 +75,7 @@ PART = mg.base.Part("part", [BOX], POSE, [mg.Grasp(np.eye(4), 0.05)])
 TRAY = mg.base.Tray("tray", np.eye(4), [0.3, 0.3, 0.1], [PART])
 PLACE_REGION = mg.base.PlaceRegion(np.eye(4), [0.3, 0.3])
 X_Y_THETA = np.array([0.5, 0.25, 0.75])
+PASSED = mg.pose([5.5, -2, 0.5], [1, 1, 0])
 
 
 @functools.cache
@@ -114,6 +116,51 @@ def seven_joint_hand() -> mg.Robot:
 
 FINGERS = [(f, [f"{f}_proximal", f"{f}_distal"]) for f in ("thumb", "finger_1", "finger_2")] + [("spread", ["spread"])]
 
+
+
+def pipe() -> mg.grasping.Pipe:
+    return mg.grasping.Pipe([[0.0, 0, 0], [0.3, 0, 0]], [(0, 1)], 0.02)
+
+
+def object_path_problem() -> mg.grasping.ObjectPathProblem:
+    return mg.grasping.ObjectPathProblem(ARM, world(), [BOX], [POSE, POSE])
+
+
+@functools.cache
+def drive_by() -> mg.planning.DriveByResult:
+    """A platform that passes a point, without anything around."""
+    robot, group = whole_body()
+    return mg.plan_drive_by(
+        robot, group, mg.World(), start=START, tasks=[mg.DriveByTask(PASSED)], goal=GOAL, waypoints=12, collisions=False
+    )
+
+
+@functools.cache
+def database() -> mg.ReachDatabase:
+    return mg.ReachDatabase.build(ARM, samples=1000, threads=1)
+
+
+def part_supply_problem() -> mg.base.PartSupplyProblem:
+    return mg.base.PartSupplyProblem(
+        ROBOT, ARM, gripper(), world(), [TRAY], Q, X_Y_THETA, X_Y_THETA, PLACE_REGION, grid_max_distance=1.0
+    )
+
+
+@functools.cache
+def object_regions() -> mg.base.ObjectRegions:
+    return mg.base.ObjectRegions.compute(part_supply_problem(), database(), GRID)
+
+
+def assembly_operation() -> mg.gripper_design.AssemblyOperation:
+    return mg.gripper_design.AssemblyOperation(
+        [mg.gripper_design.PlacedMesh("part", cube())], [], [np.eye(4), mg.pose([0, 0, 0.1])]
+    )
+
+
+def assembly_grasp() -> mg.gripper_design.AssemblyGrasp:
+    return mg.gripper_design.AssemblyGrasp(np.eye(4), contact_length=0.01, contact_width=0.01)
+
+
 OBJECTS: dict[str, Any] = {
     "Robot": lambda: ROBOT,
     "RobotSource": lambda: ROBOT.source,
@@ -122,7 +169,7 @@ OBJECTS: dict[str, Any] = {
     "DistanceField": distance_field,
     "World.detach": held,
     "CollisionChecker": lambda: mg.CollisionChecker(ROBOT, world(), ARM),
-    "ReachDatabase": lambda: mg.ReachDatabase.build(ARM, samples=1000, threads=1),
+    "ReachDatabase": database,
     "CapabilityMap": capability_map,
     "PinholeCamera": mg.mapping.PinholeCamera,
     "ProbabilisticSdf": mg.ProbabilisticSdf,
@@ -134,7 +181,16 @@ OBJECTS: dict[str, Any] = {
     "JointTrajectory": lambda: mg.time_parameterize([Q, Q / 2], np.ones(3), np.ones(3), names=["i", "j", "k"]),
     "BeamFrame": beam_frame,
     "SupportedFrame": lambda: mg.grasping.SupportedFrame(beam_frame(), mg.grasping.BeamSupport(0, 0.0)),
-    "PartSupplyProblem": lambda: mg.base.PartSupplyProblem(
-        ROBOT, ARM, gripper(), world(), [TRAY], Q, X_Y_THETA, X_Y_THETA, PLACE_REGION
-    ),
+    "PartSupplyProblem": part_supply_problem,
+    "LinkShape": lambda: BOX,
+    "Pipe": pipe,
+    "LineGrasp": mg.grasping.LineGrasp,
+    "DepthNoise": mg.mapping.DepthNoise,
+    "Hand": gripper,
+    "DriveByResult": drive_by,
+    "WholeBodyTrajectory": lambda: drive_by().trajectory,
+    "ObjectRegions": object_regions,
+    "RobotMotion": lambda: mg.planning.RobotMotion(OBJECTS["JointTrajectory"]()),
+    "BaseGrid": lambda: GRID,
+    "PlanToCheck": lambda: mg.verify.PlanToCheck(ROBOT.source),
 }

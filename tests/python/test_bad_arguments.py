@@ -6,21 +6,18 @@ test here fails and says so.
 
 from __future__ import annotations
 
-import ast
 import itertools
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
 
 import mmgrasp as mg
-from argument_objects import ARM, GRID, OBJECTS, POSE, ROBOT, X_Y_THETA, Q
-from argument_values import COMPANIONS, OTHERS, VALUES
-from mmgrasp import _core
+from argument_calls import CALLS, Parameter, callable_of, looked_up, other_arguments
+from argument_objects import ARM, GRID, OBJECTS, POSE, X_Y_THETA, Q
+from argument_values import VALUES
 
-STUBS = Path(mg.__file__).parent / "_core"
 # Images and points of scans may hold NaN; a scale may be a number.
 OTHER_RULES = (
     "DepthImage.depth",
@@ -42,57 +39,22 @@ class Argument(NamedTuple):
     given: tuple[str, ...]  # the other arguments that a call needs
 
 
-def looked_up(table: dict[str, Any], function: str, name: str) -> Any:
-    for key in (f"{function}.{name}", f"{function.rpartition('.')[0]}.{name}", name):
-        if key in table:
-            return table[key]
-    return None
+def is_array(parameter: Parameter) -> bool:
+    return parameter.annotation in ("numpy.typing.ArrayLike", "numpy.typing.ArrayLike | None")
 
 
-def arguments_of(node: ast.FunctionDef, function: str, is_method: bool) -> list[Argument]:
-    plain = node.args.args[1:] if is_method else node.args.args
-    defaults = [None] * (len(plain) - len(node.args.defaults)) + list(node.args.defaults)
-    pairs = list(zip(plain, defaults, strict=True)) + list(
-        zip(node.args.kwonlyargs, node.args.kw_defaults, strict=True)
+ARGUMENTS = [
+    Argument(
+        call.function,
+        parameter.name,
+        parameter.annotation.endswith("None"),
+        tuple(p.name for p in call.parameters if p.is_needed and p.name != parameter.name),
     )
-    needed = [a.arg for a, default in pairs if default is None]
-    found = []
-    for argument, _ in pairs:
-        annotation = ast.unparse(argument.annotation) if argument.annotation else ""
-        is_array = annotation in ("numpy.typing.ArrayLike", "numpy.typing.ArrayLike | None")
-        if is_array and f"{function}.{argument.arg}" not in OTHER_RULES:
-            rest = tuple(name for name in needed if name != argument.arg)
-            found.append(Argument(function, argument.arg, annotation.endswith("None"), rest))
-    return found
-
-
-def functions(body: list[ast.stmt], prefix: str = "") -> list[Argument]:
-    found: list[Argument] = []
-    for node in body:
-        if isinstance(node, ast.ClassDef):
-            found += functions(node.body, f"{prefix}{node.name}.")
-        elif isinstance(node, ast.FunctionDef):
-            decorators = [ast.unparse(d) for d in node.decorator_list]
-            if any(d == "property" or d.endswith(".setter") for d in decorators):
-                continue
-            in_class = prefix.removeprefix("verify.") != ""
-            name = prefix.rstrip(".") if node.name == "__init__" else prefix + node.name
-            found += arguments_of(node, name, in_class and "staticmethod" not in decorators)
-    return found
-
-
-ARGUMENTS = functions(ast.parse((STUBS / "__init__.pyi").read_text()).body) + functions(
-    ast.parse((STUBS / "verify.pyi").read_text()).body, "verify."
-)
-
-
-def callable_of(function: str) -> Any:
-    target: Any = _core
-    *path, last = function.split(".")
-    for step in path:
-        made = OBJECTS.get(function) or OBJECTS.get(step)
-        target = made() if made else getattr(target, step)
-    return getattr(target, last)
+    for call in CALLS
+    if not call.is_setter
+    for parameter in call.parameters
+    if is_array(parameter) and f"{call.function}.{parameter.name}" not in OTHER_RULES
+]
 
 
 def value_of(argument: Argument) -> np.ndarray:
@@ -104,15 +66,8 @@ def value_of(argument: Argument) -> np.ndarray:
 
 
 def call(argument: Argument, value: Any) -> Any:
-    keywords = {argument.name: value, **COMPANIONS.get(f"{argument.function}.{argument.name}", {})}
-    for name in argument.given:
-        other = looked_up(OTHERS, argument.function, name)
-        if other is not None:
-            keywords[name] = other()
-        else:
-            array = looked_up(VALUES, argument.function, name)
-            keywords[name] = POSE if array is None and name.startswith("T_") else 0.05 if array is None else array
-    return callable_of(argument.function)(**keywords)
+    others = other_arguments(argument.function, argument.name, argument.given)
+    return callable_of(argument.function)(**{argument.name: value, **others})
 
 
 def bad_values(argument: Argument) -> dict[str, Any]:

@@ -176,7 +176,7 @@ void CuboidFitOptions::check() const {
   require(leaf < cluster_tolerance, "leaf", leaf,
           "must be less than cluster_tolerance, " + std::to_string(cluster_tolerance));
   require(min_points >= 8, "min_points", min_points, "must be at least 8");
-  require(plane_iterations > 0, "plane_iterations", plane_iterations, "must be positive");
+  require_within(plane_iterations, 1, 1e6, "plane_iterations", "");
 }
 
 CuboidFit fit_cuboids(const std::vector<Vector3d>& points, const CuboidFitOptions& options,

@@ -39,13 +39,15 @@ Cloud::Ptr to_pcl(const std::vector<Eigen::Vector3d>& points) {
   return cloud;
 }
 
-/// PCL's searches for planes ask for every plane that they try how many points lie on it.
+/// PCL's searches for planes ask for every plane that they try how many points lie on it. Once interrupted there are
+/// none, so that the rest takes no time: an exception must not leave PCL's loop, which is compiled for OpenMP.
 template <typename Model>
 class InterruptibleModel : public Model {
  public:
   using Model::Model;
   std::size_t countWithinDistance(const Eigen::VectorXf& coefficients, const double threshold) const override {
-    throw_if_interrupted();
+    const CancelToken* interruption = interruption_token();
+    if (interruption != nullptr && interruption->stopped()) return 0;
     return Model::countWithinDistance(coefficients, threshold);
   }
 };
@@ -103,6 +105,7 @@ FoundPlane dominant_plane(const std::vector<Eigen::Vector3d>& points, double tol
   pcl::PointIndices inliers;
   pcl::ModelCoefficients plane;
   search.segment(inliers, plane);
+  throw_if_interrupted();
   if (inliers.indices.size() < 3 || plane.values.size() != 4) return out;
   const Eigen::Vector3d normal(plane.values[0], plane.values[1], plane.values[2]);
   out.found = true;

@@ -5,6 +5,7 @@
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -27,6 +28,8 @@ void LineGrasp::check() const {
 double LineGrasp::success(double opening, double position, double object) const {
   check();
   require(opening >= 0 && opening <= max_opening, "opening", opening, "must be in [0, max_opening] [m]");
+  require_coordinate(position, "position");
+  require_coordinate(object, "object");
   const double off = std::abs(position - object);
   return off < (opening - width) / 2 ? 1 - off / ((max_opening - width) / 2) : 0;
 }

@@ -181,7 +181,7 @@ void ObjectSegmentationOptions::check() const {
   require(std::isfinite(patch) && patch >= 2 * leaf, "patch", patch, "must be finite and at least 2 leaf [m]");
   require(concavity > 0 && concavity < 2 * kHalfPi, "concavity", concavity, "must be in (0, pi) [rad]");
   require(min_points > 0, "min_points", min_points, "must be positive");
-  require(plane_iterations > 0, "plane_iterations", plane_iterations, "must be positive");
+  require_within(plane_iterations, 1, 1e6, "plane_iterations", "");
 }
 
 ObjectSegmentation segment_objects(const Matrix3Xd& points, const Matrix3Xd& normals,

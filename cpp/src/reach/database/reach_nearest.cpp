@@ -26,7 +26,7 @@ class Nearest {
  public:
   Nearest(std::vector<Near>& storage, int count) : found_(storage), count_(count) {
     found_.clear();
-    found_.reserve(count_);
+    found_.reserve(std::min<std::size_t>(count_, 1024));  // whatever is asked for, a database may hold little
   }
   /// Finite while there is room, so that cells out of bounds (at infinity) stay out.
   float worst() const { return found_.size() < count_ ? std::numeric_limits<float>::max() : found_.back().distance; }

@@ -9,6 +9,7 @@
 #include "mmgrasp/core/parallel.hpp"
 #include "reach/database/reach_data.hpp"
 #include "reach/database/seeded_ik.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -78,8 +79,8 @@ void check_checker(const CollisionChecker* checker, const JointGroup& arm) {
 }  // namespace detail
 
 void ReachSolveOptions::check() const {
-  require(count > 0, "count", count, "must be positive");
-  require(candidates > 0, "candidates", candidates, "must be positive");
+  require_within(count, 1, 1e6, "count", "configurations");
+  require_within(candidates, 1, 1e6, "candidates", "stored configurations");
   require(distinct >= 0 && std::isfinite(distinct), "distinct", distinct, "must be finite and >= 0 [rad or m]");
   resolve_threads(threads);  // says what is wrong
   ik.check();

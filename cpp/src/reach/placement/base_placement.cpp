@@ -11,6 +11,7 @@
 #include "mmgrasp/core/parallel.hpp"
 #include "reach/database/reach_data.hpp"
 #include "reach/database/seeded_ik.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -318,8 +319,8 @@ class PlacementSearch {
 void BasePlacementOptions::check() const {
   require(std::isfinite(step) && step > 0, "step", step, "must be positive and finite [m]");
   require(headings > 0 && headings <= 3600, "headings", headings, "must lie in [1, 3600]");
-  require(candidates > 0, "candidates", candidates, "must be positive");
-  require(seeds > 0, "seeds", seeds, "must be positive");
+  require_within(candidates, 1, 1e6, "candidates", "base poses");
+  require_within(seeds, 1, 1e6, "seeds", "stored configurations");
   require(refinements >= 0, "refinements", refinements, "must be >= 0");
   resolve_threads(threads);  // says what is wrong
   ik.check();

@@ -33,7 +33,7 @@ double JointPath::length() const {
 
 Eigen::VectorXd JointTrajectory::at(double time) const {
   if (times.empty()) throw InvalidInput("trajectory times = []: must hold at least one sample");
-  require(!std::isnan(time), "time", time, "must be a number [s]");
+  require(std::isfinite(time), "time", time, "must be finite [s]");
   if (time <= times.front()) return positions.front();
   if (time >= times.back()) return positions.back();
   const auto upper = std::upper_bound(times.begin(), times.end(), time);

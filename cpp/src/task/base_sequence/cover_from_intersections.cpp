@@ -5,6 +5,7 @@
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/optim/set_cover.hpp"
 #include "mmgrasp/task/base_sequence.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -35,7 +36,7 @@ int widest_for(const std::vector<Intersection>& intersections, const std::vector
 }  // namespace
 
 StopSet cover_from_intersections(const BaseGrid& grid, const std::vector<Intersection>& intersections, int trays) {
-  require(trays >= 0, "trays", trays, "must not be negative");
+  require_within(trays, 0, 10000, "trays", "");
   StopSet result;
   SetCoverProblem problem;
   problem.elements = trays;

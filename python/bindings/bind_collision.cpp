@@ -132,7 +132,7 @@ void bind_checker(py::module_& m) {
                       const py::kwargs& options) {
             const JointGroup& group = taken(given_group, "group");
             check_same_robot(taken(robot, "robot"), group);
-            const World& scene = taken(world, "world");
+            const World scene = taken(world, "world");  // a snapshot: other threads may change the world meanwhile
             const CheckerOptions read = read_options(checker_fields(), options, "CollisionChecker");
             const JointGroup paired = with_sampled_pairs(group);
             return interruptible([&] { return CollisionChecker(paired, scene, read); });

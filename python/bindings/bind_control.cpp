@@ -141,7 +141,8 @@ void bind_control(py::module_& m) {
       "track_base",
       [](const Robot& robot, const JointTrajectory& trajectory, const py::kwargs& options) {
         const TrackingRun run = read_options(run_fields(), options, "track_base");
-        return interruptible([&] { return track_base(trajectory, robot.base(), robot.base_limits(), run.options, run.disturbance); });
+        return interruptible(
+            [&] { return track_base(trajectory, robot.base(), robot.base_limits(), run.options, run.disturbance); });
       },
       py::arg("robot"), py::arg("trajectory"),
       ("Drives the robot's base along the columns x, y, theta of a trajectory, with slip and noise (P1 4.4.2, figure "

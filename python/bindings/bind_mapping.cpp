@@ -81,12 +81,12 @@ void bind_clouds(py::module_& m) {
         return "PointCloud(" + std::to_string(c.width) + " x " + std::to_string(c.height) + ")";
       });
   m.def(
-      "read_pcd", [](const PathLike& path) { 
+      "read_pcd",
+      [](const PathLike& path) {
         const std::string file = path_argument(path, "path");
         return interruptible([&] { return read_pcd(file); });
       },
-      py::arg("path"),
-      "Reads a PCD file: ascii, binary or binary_compressed. Raises IoError naming file and rule.");
+      py::arg("path"), "Reads a PCD file: ascii, binary or binary_compressed. Raises IoError naming file and rule.");
 }
 
 void bind_images(py::module_& m) {

@@ -99,7 +99,7 @@ void bind_depth_camera(py::module_& m) {
             return noise.sigma(finite_argument(depth, "depth"), finite_argument(incidence, "incidence"));
           },
           "depth"_a, "incidence"_a = 0.0,
-           "Standard deviation [m] at a depth [m] and an angle of incidence in [0, pi/2) [rad].")
+          "Standard deviation [m] at a depth [m] and an angle of incidence in [0, pi/2) [rad].")
       .def_readonly("constant", &DepthNoise::constant, "[m]")
       .def_readonly("linear", &DepthNoise::linear, "Per metre of depth.")
       .def_readonly("quadratic", &DepthNoise::quadratic, "[1/m]")

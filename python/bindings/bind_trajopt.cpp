@@ -304,7 +304,8 @@ DriveByResult shorten(const JointGroup& group, const World& world, const std::ve
                       std::vector<double> times, const ArrayLike& positions, std::vector<double> task_times,
                       const Progress& progress, const py::kwargs& options) {
   const DriveByOptions read = read_options(drive_by_fields(), options, "shorten_drive_by");
-  const KnownMotion known{std::move(times), configurations_argument(positions, "positions", group.size()), std::move(task_times)};
+  const KnownMotion known{std::move(times), configurations_argument(positions, "positions", group.size()),
+                          std::move(task_times)};
   const JointGroup with_pairs = with_sampled_pairs(group);
   return LongCall(progress).run(
       [&](const Monitor& monitor) { return shorten_drive_by(with_pairs, world, tasks, known, read, monitor); });

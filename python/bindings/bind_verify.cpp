@@ -225,6 +225,7 @@ void bind_path_check(py::module_& m) {
         check.joints = joints;
         check.waypoints = rows_argument(path, "path", static_cast<Eigen::Index>(joints.size()));
         check.bodies = bodies;
+        for (const auto& [name, value] : other_joints) finite_argument(value, "other_joints['" + name + "']");
         check.other_joints = other_joints;
         check.allowed_collisions = allowed_collisions;
         return interruptible([&] { return verify::check_path(check, joint_step); });

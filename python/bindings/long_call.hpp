@@ -74,8 +74,8 @@ class LongCall {
   std::optional<std::pair<std::string, double>> latest_;
 };
 
-/// Runs work that may take long and reports no progress, so that Ctrl-C ends it: what takes a Monitor by that, all other
-/// by detail::throw_if_interrupted(). Work must not touch Python's objects.
+/// Runs work that may take long and reports no progress, so that Ctrl-C ends it: what takes a Monitor by that, all
+/// other by detail::throw_if_interrupted(). Work must not touch Python's objects.
 template <typename Work>
 auto interruptible(Work&& work) {
   return LongCall(py::none()).run([&](const Monitor& monitor) {

@@ -51,7 +51,7 @@ def _calls(body: list[ast.stmt], prefix: str = "") -> list[Call]:
             found += _calls(node.body, f"{prefix}{node.name}.")
         elif isinstance(node, ast.FunctionDef):
             decorators = [ast.unparse(d) for d in node.decorator_list]
-            if "property" in decorators or node.name.startswith("__") and node.name != "__init__":
+            if "property" in decorators or (node.name.startswith("__") and node.name != "__init__"):
                 continue
             in_class = prefix.removeprefix("verify.") != ""
             name = prefix.rstrip(".") if node.name == "__init__" else prefix + node.name

@@ -117,7 +117,6 @@ def seven_joint_hand() -> mg.Robot:
 FINGERS = [(f, [f"{f}_proximal", f"{f}_distal"]) for f in ("thumb", "finger_1", "finger_2")] + [("spread", ["spread"])]
 
 
-
 def pipe() -> mg.grasping.Pipe:
     return mg.grasping.Pipe([[0.0, 0, 0], [0.3, 0, 0]], [(0, 1)], 0.02)
 

@@ -1,6 +1,6 @@
 """Calls with so much work that Ctrl-C comes in the middle, and a process that makes one (test_long_work.py).
 
-    python tests/python/long_work.py [NAME [MOMENT...]]      how long each takes to end, in processor time
+python tests/python/long_work.py [NAME [MOMENT...]]      how long each takes to end, in processor time
 """
 
 from __future__ import annotations
@@ -92,7 +92,9 @@ def _segment(folder: Path) -> Callable[[], Any]:
 
 def _segment_up(folder: Path) -> Callable[[], Any]:
     cloud = table_scan(3_000_000)
-    return lambda: mg.mapping.segment_objects(cloud, up=[0, 0, 1], leaf=0.001, plane_iterations=10**6, min_plane_share=0.9)
+    return lambda: mg.mapping.segment_objects(
+        cloud, up=[0, 0, 1], leaf=0.001, plane_iterations=10**6, min_plane_share=0.9
+    )
 
 
 def _fit(folder: Path) -> Callable[[], Any]:

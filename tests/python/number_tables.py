@@ -16,6 +16,8 @@ UNBOUNDED = {
     "time_limit",
     "max_range",
     "truncation",
+    "online_limit",
+    "tie_time_limit",
     "farthest",
 }
 

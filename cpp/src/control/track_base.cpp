@@ -61,6 +61,8 @@ void record(BaseTrackingResult& result, double time, const Eigen::Vector3d& desi
   result.heading_errors.push_back(wrap_angle(desired.z() - actual.z()));
 }
 
+constexpr double kMostSteps = 1e6;
+
 }  // namespace
 
 void BaseDisturbance::check() const {
@@ -113,7 +115,10 @@ BaseTrackingResult track_base(const JointTrajectory& plan, BaseKind kind, const 
   Rng sensor(disturbance.seed, 1);
 
   const double h = options.period;
-  const auto steps = static_cast<std::size_t>(std::ceil((plan.duration() + options.settle) / h - 1e-9));
+  const double wanted = std::ceil((plan.duration() + options.settle) / h - 1e-9);
+  require(wanted <= kMostSteps, "period", h,
+          "must be longer: at most a million commands over the plan and `settle` [s]");
+  const auto steps = static_cast<std::size_t>(wanted);
   BaseTrackingResult result;
   Eigen::Vector3d desired = base_pose(plan, columns, 0);
   Eigen::Vector3d actual = desired + disturbance.start_error;

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/geometry/detail/mesh_topology.hpp"
 #include "mmgrasp/geometry/mesh.hpp"
-#include "mmgrasp/core/detail/interruption.hpp"
 
 namespace mmgrasp {
 

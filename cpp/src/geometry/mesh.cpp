@@ -15,7 +15,8 @@ std::shared_ptr<const TriangleMesh> make_mesh(std::vector<Eigen::Vector3d> verti
   const std::string name = source.empty() ? "mesh" : "mesh '" + source + "'";
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     if (!vertices[i].allFinite()) throw InvalidInput(name + ": vertex " + std::to_string(i) + " is not finite");
-    if (vertices[i].cwiseAbs().maxCoeff() > kLargestLength) require_position(vertices[i], name + ": vertex " + std::to_string(i));
+    if (vertices[i].cwiseAbs().maxCoeff() > kLargestLength)
+      require_position(vertices[i], name + ": vertex " + std::to_string(i));
   }
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     for (const int corner : triangles[i]) {

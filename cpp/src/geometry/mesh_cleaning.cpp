@@ -5,8 +5,8 @@
 #include <cstring>
 #include <unordered_map>
 
-#include "mmgrasp/geometry/detail/mesh_topology.hpp"
 #include "mmgrasp/core/detail/interruption.hpp"
+#include "mmgrasp/geometry/detail/mesh_topology.hpp"
 
 namespace mmgrasp::detail {
 

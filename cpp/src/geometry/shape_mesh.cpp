@@ -4,8 +4,8 @@
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
-#include "mmgrasp/geometry/shape.hpp"
 #include "mmgrasp/core/limits.hpp"
+#include "mmgrasp/geometry/shape.hpp"
 
 namespace mmgrasp {
 

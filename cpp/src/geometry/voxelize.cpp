@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <string>
 
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/geometry/octree.hpp"
-#include "mmgrasp/core/detail/interruption.hpp"
 
 namespace mmgrasp {
 

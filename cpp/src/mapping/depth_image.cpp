@@ -4,6 +4,7 @@
 #include <string>
 
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
 
@@ -16,7 +17,7 @@ void DepthImage::check() const {
 
 void DepthImage::clean() {
   for (float& z : depth) {
-    if (z >= 0 && !std::isinf(z)) continue;
+    if (z >= 0 && z <= kLargestLength) continue;
     z = 0;
     ++invalid;
   }

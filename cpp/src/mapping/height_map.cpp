@@ -6,10 +6,10 @@
 #include <limits>
 #include <string>
 
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/limits.hpp"
-#include "mmgrasp/core/detail/interruption.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -49,8 +49,8 @@ class CellPainter {
     const double area = cross(q - p, r - p);
     if (area == 0) return;
     // Cell ix is covered when its centre ix + 0.5 is.
-    const int x0 = first(std::min({p.x(), q.x(), r.x()})), x1 = last(std::max({p.x(), q.x(), r.x()}), map_.nx);
-    const int y0 = first(std::min({p.y(), q.y(), r.y()})), y1 = last(std::max({p.y(), q.y(), r.y()}), map_.ny);
+    const int x0 = first(std::min({p.x(), q.x(), r.x()}), map_.nx), x1 = last(std::max({p.x(), q.x(), r.x()}), map_.nx);
+    const int y0 = first(std::min({p.y(), q.y(), r.y()}), map_.ny), y1 = last(std::max({p.y(), q.y(), r.y()}), map_.ny);
     for (int iy = y0; iy <= y1; ++iy) {
       for (int ix = x0; ix <= x1; ++ix) {
         const Eigen::Vector2d s(ix + 0.5, iy + 0.5);
@@ -66,9 +66,12 @@ class CellPainter {
 
  private:
   static double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
-  static int first(double lower) { return static_cast<int>(std::max(0.0, std::ceil(lower - 0.5 - 1e-9))); }
+  // Triangles may lie anywhere: clamped before they become whole numbers.
+  static int first(double lower, int size) {
+    return static_cast<int>(std::clamp(std::ceil(lower - 0.5 - 1e-9), 0.0, double(size)));
+  }
   static int last(double upper, int size) {
-    return static_cast<int>(std::min(size - 1.0, std::floor(upper - 0.5 + 1e-9)));
+    return static_cast<int>(std::clamp(std::floor(upper - 0.5 + 1e-9), -1.0, size - 1.0));
   }
 
   const HeightMap& map_;

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <string>
 
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
-#include "mmgrasp/core/detail/interruption.hpp"
 
 namespace mmgrasp {
 

@@ -5,10 +5,10 @@
 #include <cmath>
 
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/robot/base_motion.hpp"
 #include "mmgrasp/trajopt/whole_body_problem.hpp"
 #include "trajopt/unicycle_arc.hpp"
-#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
 namespace {

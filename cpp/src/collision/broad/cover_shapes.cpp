@@ -6,9 +6,9 @@
 #include <functional>
 
 #include "collision/narrow/solid.hpp"
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/geometry/detail/triangle_distance.hpp"
-#include "mmgrasp/core/detail/interruption.hpp"
 
 namespace mmgrasp::detail {
 

@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "collision/narrow/solid.hpp"
-#include "mmgrasp/geometry/detail/triangle_distance.hpp"
 #include "mmgrasp/core/detail/interruption.hpp"
+#include "mmgrasp/geometry/detail/triangle_distance.hpp"
 
 namespace mmgrasp::detail {
 

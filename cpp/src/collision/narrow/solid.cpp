@@ -8,10 +8,10 @@
 #include "collision/narrow/field_body.hpp"
 #include "collision/narrow/stages.hpp"
 #include "mmgrasp/core/detail/cell_key.hpp"
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/geometry/detail/mesh_topology.hpp"
-#include "mmgrasp/core/detail/interruption.hpp"
 
 namespace mmgrasp::detail {
 

@@ -17,7 +17,8 @@ void GridDistanceField::Grid::check() const {
   require(values.size() == points, "values", static_cast<double>(values.size()),
           "must be as many as the grid has points (" + std::to_string(points) + ")");
   for (const double value : values)
-    require(!(std::abs(value) > kLargestLength), "values", value, "must be finite and within 1e6 m, or NaN where unknown");
+    require(!(std::abs(value) > kLargestLength), "values", value,
+            "must be finite and within 1e6 m, or NaN where unknown");
   require_position(origin, "origin");
   require_length(spacing, "spacing");
   for (const int count : size)

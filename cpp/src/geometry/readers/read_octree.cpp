@@ -9,8 +9,8 @@
 #include "geometry/readers/mesh_readers.hpp"
 #include "geometry/readers/octree_reader.hpp"
 #include "mmgrasp/core/detail/file_content.hpp"
-#include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/detail/interruption.hpp"
+#include "mmgrasp/core/error.hpp"
 
 namespace mmgrasp {
 namespace {

@@ -7,8 +7,8 @@
 #include "geometry/readers/mesh_readers.hpp"
 #include "geometry/readers/pcd_reader.hpp"
 #include "mmgrasp/core/detail/file_content.hpp"
-#include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/detail/interruption.hpp"
+#include "mmgrasp/core/error.hpp"
 
 namespace mmgrasp {
 namespace {

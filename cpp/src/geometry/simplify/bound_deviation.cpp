@@ -4,10 +4,10 @@
 #include <queue>
 
 #include "geometry/hierarchy/triangle_tree.hpp"
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/geometry/simplify_mesh.hpp"
-#include "mmgrasp/core/detail/interruption.hpp"
 
 namespace mmgrasp {
 namespace {

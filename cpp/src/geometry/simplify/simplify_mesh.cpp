@@ -6,9 +6,9 @@
 
 #include "geometry/hierarchy/triangle_tree.hpp"
 #include "geometry/simplify/decimate_outwards.hpp"
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
-#include "mmgrasp/core/detail/interruption.hpp"
 
 namespace mmgrasp {
 namespace {

@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "mapping/segmentation/surface_cells.hpp"
-#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/detail/interruption.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
 
 namespace mmgrasp::detail {
 namespace {

@@ -7,6 +7,7 @@
 
 #include "mmgrasp/core/detail/stopwatch.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "optim/set_cover/set_cover_branching.hpp"
 #include "optim/set_cover/set_cover_prices.hpp"
 #include "optim/set_cover/set_cover_reduction.hpp"
@@ -191,7 +192,7 @@ class Solver {
 }  // namespace
 
 void SetCoverProblem::check() const {
-  require(elements >= 0, "elements", elements, "must be 0 or more");
+  require_within(elements, 0, 1e7, "elements", "");
   for (std::size_t s = 0; s < sets.size(); ++s) {
     for (int e : sets[s]) {
       require(e >= 0 && e < elements, "sets[" + std::to_string(s) + "]", e,

@@ -8,10 +8,10 @@
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/core/parallel.hpp"
 #include "reach/database/reach_data.hpp"
 #include "reach/database/seeded_ik.hpp"
-#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
 namespace {

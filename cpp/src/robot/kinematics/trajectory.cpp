@@ -1,8 +1,8 @@
 #include "mmgrasp/robot/trajectory.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <charconv>
+#include <cmath>
 
 #include "mmgrasp/core/error.hpp"
 

@@ -4,6 +4,7 @@
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/robot/base_motion.hpp"
 #include "mmgrasp/task/base_route.hpp"
 
@@ -49,7 +50,7 @@ double base_path_duration(const BasePath& path, BaseKind base, const BaseLimits&
 
 RobotMotion base_path_motion(const BasePath& path, BaseKind base, const BaseLimits& base_limits,
                              const std::vector<std::string>& joints, const Eigen::VectorXd& q, double period) {
-  require(period > 0, "period", period, "must be positive");
+  require_within(period, 1e-4, 1e6, "period", "s");
   if (path.poses.empty()) throw InvalidInput("path: has no poses");
   require(q.size() == static_cast<Eigen::Index>(joints.size()), "q", static_cast<double>(q.size()),
           "must hold one value per joint");

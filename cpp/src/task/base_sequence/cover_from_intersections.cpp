@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/optim/set_cover.hpp"
 #include "mmgrasp/task/base_sequence.hpp"
-#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
 namespace {

@@ -6,11 +6,11 @@
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/core/parallel.hpp"
 #include "task/drive_by/drive_by_assignments.hpp"
 #include "task/drive_by/drive_by_events.hpp"
 #include "task/drive_by/drive_by_solve.hpp"
-#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -209,7 +209,7 @@ void DriveByOptions::check() const {
   require(seeds > 0, "seeds", seeds, "must be positive");
   require(solutions > 0, "solutions", solutions, "must be positive");
   require(grasp_assignments > 0, "grasp_assignments", grasp_assignments, "must be positive");
-  require(goal_configurations > 0, "goal_configurations", goal_configurations, "must be positive");
+  require_within(goal_configurations, 1, 1e4, "goal_configurations", "");
   require(iterations > 0, "iterations", iterations, "must be positive");
   require(time_limit > 0, "time_limit", time_limit, "must be positive");
   require(jerk_time >= 0 && std::isfinite(jerk_time), "jerk_time", jerk_time, "must be at least 0");

@@ -3,12 +3,13 @@
 #include <cmath>
 
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/task/drive_by.hpp"
 
 namespace mmgrasp {
 
 RobotMotion drive_by_motion(const DriveByResult& result, const std::vector<double>& openings, double period) {
-  require(period > 0, "period", period, "must be positive");
+  require_within(period, 1e-4, 1e6, "period", "s");
   if (!result.trajectory) throw InvalidInput("result: there is no trajectory to carry out");
   const std::vector<double>& times = result.trajectory->times();
   double longest = 0;

@@ -42,9 +42,10 @@ VALUES: dict[str, Any] = {
     "True": True,
     "a word": "x",
     "None": None,
+    "complex": 1j,
     "a huge list": [0.5] * 10**6,
 }
-NEVER = ("nan", "-inf", "a word", "a huge list")  # no number takes these
+NEVER = ("nan", "-inf", "a word", "complex", "a huge list")  # no number takes these
 GIGABYTE = 2**30
 SOFT, HARD = 2.0, 8  # [s] of processor time: when Ctrl-C comes, and when a try that does not hear it is ended
 LONGEST = 600.0  # [s] that a try may take on the clock, when others use the processor

@@ -7,7 +7,6 @@ test here fails and says so.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -186,34 +185,6 @@ def test_whole_numbers_are_numbers() -> None:
     assert np.array_equal(ARM.fk([0, 1, 0]), ARM.fk([0.0, 1.0, 0.0]))
     assert np.array_equal(ARM.fk(np.array([0, 1, 0], np.int8)), ARM.fk([0.0, 1.0, 0.0]))
     assert np.array_equal(ARM.fk(np.array([0, 0.5, 0], np.float16)), ARM.fk([0.0, 0.5, 0.0]))
-
-
-@pytest.mark.parametrize("number", [float("nan"), float("inf"), "x", None, 1j])
-def test_numbers_that_are_none(number: Any) -> None:
-    world = mg.World()
-    calls: list[Callable[[], Any]] = [
-        lambda: world.add_sphere("a", number),
-        lambda: world.add_cylinder("a", 0.1, number),
-        lambda: world.add_points("a", [[1.0, 2, 3]], number),
-        lambda: mg.Sphere(number),
-        lambda: mg.collision.Capsule(number, 1.0),
-        lambda: mg.collision.Plane([0, 0, 1], number),
-        lambda: mg.collision.Voxels([[1.0, 2, 3]], number),
-        lambda: mg.base.BaseGrid([0, 0], number, 4, 3),
-        lambda: mg.base.BaseGrid([0, 0], 0.1, 4, 3, [number]),
-        lambda: mg.base.PlaceRegion(np.eye(4), [0.3, 0.3], number),
-        lambda: mg.Grasp(np.eye(4), number),
-        lambda: mg.CollisionChecker(ROBOT, world, ARM, padding=number),
-        lambda: OBJECTS["CollisionChecker"]().edge_is_free(Q, Q, number),
-        lambda: OBJECTS["CollisionChecker"]().distances(Q, number),
-        lambda: ROBOT.link_poses({"i": number}),
-        lambda: ROBOT.values({"i": number}),
-        lambda: ARM.within_limits(Q, number),
-        lambda: mg.optim.solve_set_cover(1, [[0]], [number]),
-    ]
-    for k, bad in enumerate(calls):
-        with pytest.raises((mg.Error, ValueError, TypeError)):
-            print(k, bad())
 
 
 def test_deep_and_endless_sequences_do_not_crash() -> None:

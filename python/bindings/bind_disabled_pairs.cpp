@@ -68,10 +68,10 @@ void write_pairs(const std::filesystem::path& file, const Robot& before, const R
 }
 
 Robot sampled(const Robot& robot, const Progress& progress) {
+  LongCall call(progress);  // first: a wrong argument is told even when nothing is left to do
   const std::filesystem::path file = cache_folder() / ("pairs-" + robot.hash() + ".txt");
   if (auto pairs = read_pairs(file, robot); !pairs.empty()) return robot.with_disabled_pairs(std::move(pairs));
-  Robot out =
-      LongCall(progress).run([&](const Monitor& monitor) { return compute_disabled_pairs(robot, {}, monitor); });
+  Robot out = call.run([&](const Monitor& monitor) { return compute_disabled_pairs(robot, {}, monitor); });
   write_pairs(file, robot, out);
   return out;
 }

@@ -121,8 +121,13 @@ def load_assembly(path: str | os.PathLike[str]) -> Assembly:
     """
     file = shipped_assembly(path)
     root = read_yaml(file).root
+    with root.blamed():
+        return _read_assembly(root, str(file.resolve()))
+
+
+def _read_assembly(root: Node, source: str) -> Assembly:
     if not isinstance(root.raw, dict) or "format" not in root.raw:
-        raise InvalidInput(f"{root.document.source}: is no assembly: the key format: mmgrasp-assembly is missing")
+        raise InvalidInput(f"{root.place}: is no assembly: the key format: mmgrasp-assembly is missing")
     root["format"].choice("mmgrasp-assembly")
     root.read_version(1)
     root.mapping("format version name unit parts order actuators", "fingers holding options")
@@ -136,7 +141,7 @@ def load_assembly(path: str | os.PathLike[str]) -> Assembly:
         parts[part.name] = part
     return Assembly(
         root["name"].label(),
-        str(file.resolve()),
+        source,
         parts,
         _read_order(root["order"], parts, scale),
         [_read_actuator(node, scale) for node in _filled(root["actuators"])],
@@ -169,7 +174,8 @@ def _read_part(node: Node, scale: float, unit: str) -> AssemblyPart:
     source = ""
     if kinds == ["mesh"]:
         source = str(find_file(node["mesh"]))
-        mesh = Mesh.load(source, [scale] * 3)
+        with node["mesh"].blamed():
+            mesh = Mesh.load(source, [scale] * 3)
     elif kinds == ["turned"]:
         mesh = _turned(node["turned"], scale)
     else:

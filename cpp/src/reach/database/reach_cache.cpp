@@ -45,6 +45,7 @@ ReachDatabase ReachDatabase::load_or_build(const JointGroup& arm, const ReachOpt
         return found;
       }
     } catch (const IoError&) {  // a damaged cache is worth nothing, and costs nothing: build again and replace it
+      monitor.report("replacing a damaged reachability database", 0);
     }
     detail::move_away(path);
   }

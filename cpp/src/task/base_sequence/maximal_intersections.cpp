@@ -5,6 +5,7 @@
 
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/task/base_sequence.hpp"
+#include "task/base_sequence/inscribed_circle.hpp"
 #include "task/base_sequence/region_patches.hpp"
 
 // Lengths in here are in cells: cell (ix, iy) is the square [ix, ix + 1] x [iy, iy + 1].
@@ -12,8 +13,9 @@ namespace mmgrasp {
 namespace detail {
 namespace {
 
-constexpr double kRadiusSlack = 1e-9;  // [m]: a disc of exactly the least radius counts.
-constexpr double kSmallestBox = 1e-6;  // [m]: smaller boxes are not split; only the points tried in them count.
+// [m]: smaller boxes are not split; only the points tried in them count. A disc of the least radius leaves its middle
+// room of the slack's size, which the middle of some box of half of it meets.
+constexpr double kSmallestBox = 0.5e-9;
 
 struct Window {
   double x0, x1, y0, y1;

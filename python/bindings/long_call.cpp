@@ -1,5 +1,7 @@
 #include "long_call.hpp"
 
+#include <pthread.h>
+
 #include <atomic>
 #include <chrono>
 #include <thread>
@@ -20,6 +22,7 @@ struct Waiting {
 };
 
 constexpr std::chrono::milliseconds kPoll(30);
+constexpr std::size_t kLeastStack = std::size_t{8} << 20;  // as Linux gives unless told otherwise [bytes]
 constexpr int kMostPolls = 100;  // The interpreter waits this often for calls that do not end.
 
 void end_calls() {
@@ -38,6 +41,16 @@ bool is_main_thread() {
 
 void end_calls_at_exit() {
   py::module_::import("atexit").attr("register")(py::cpp_function(&end_calls));
+}
+
+void give_threads_room() {
+  pthread_attr_t attributes;
+  if (pthread_getattr_default_np(&attributes) != 0) return;
+  std::size_t size = 0;
+  pthread_attr_getstacksize(&attributes, &size);
+  if (size < kLeastStack && pthread_attr_setstacksize(&attributes, kLeastStack) == 0)
+    pthread_setattr_default_np(&attributes);
+  pthread_attr_destroy(&attributes);
 }
 
 bool LongCall::wait() {

@@ -71,6 +71,9 @@ class LongCall {
   std::optional<std::pair<std::string, double>> latest_;
 };
 
+/// Stacks of threads that are started from here on hold our calls also where the process has little (ulimit -s).
+void give_threads_room();
+
 /// Registers with Python's atexit that long calls of other threads end before the interpreter does.
 void end_calls_at_exit();
 

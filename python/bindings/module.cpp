@@ -105,4 +105,5 @@ PYBIND11_MODULE(_core, m) {
   bind_verify(m);
   refuse_bare_objects(m);
   end_calls_at_exit();
+  give_threads_room();
 }

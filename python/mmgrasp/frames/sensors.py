@@ -164,7 +164,9 @@ def _read_noise(node: Node, sensor: Sensor) -> DepthNoise:
     if model == "stereo":
         node.mapping("model baseline disparity_sigma" + ("" if sensor.intrinsics else " focal"), keys)
         focal = node["focal"].number(above=0) if "focal" in node else sensor.intrinsics.fx  # type: ignore[union-attr]
-        return DepthNoise.stereo(focal, node["baseline"].number(above=0), node["disparity_sigma"].number(above=0))
+        baseline, sigma = node["baseline"].number(above=0), node["disparity_sigma"].number(above=0)
+        with node.blamed():
+            return DepthNoise.stereo(focal, baseline, sigma)
     values = {key: node[key].number() for key in keys.split() if key in node}
     with node.blamed():
         return DepthNoise(**values)

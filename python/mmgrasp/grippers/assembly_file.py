@@ -139,6 +139,10 @@ def _read_assembly(root: Node, source: str) -> Assembly:
         if part.name in parts:
             node["name"].fail("is there twice: parts must have names of their own")
         parts[part.name] = part
+    holding = _read_holding(root, scale)
+    for node in root["parts"].elements() if holding is not None else []:
+        if not parts[node["name"].raw].mesh.closed:
+            node.fail("must be a closed mesh for its weight to be known (holding)")
     return Assembly(
         root["name"].label(),
         source,
@@ -148,7 +152,7 @@ def _read_assembly(root: Node, source: str) -> Assembly:
         _read_fingers(root, scale),
         _read_options(root),
         unit,
-        _read_holding(root, scale),
+        holding,
     )
 
 

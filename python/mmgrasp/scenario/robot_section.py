@@ -29,6 +29,7 @@ from .shapes import read_shapes
 BASE_LIMITS = "linear_velocity angular_velocity linear_acceleration angular_acceleration workspace wheel_velocity wheel_separation"
 ROBOT_KEYS = "urdf srdf packages xacro_args base base_limits mount frames group tool_link joints home"
 BIN_LINK = "place_bin"
+LONGEST_CROSSING = 600.0  # from end to end of a joint's range [s]
 SLOWEST = 1e-3  # of a base [m/s, rad/s and their rates]: a round that takes days has more samples than memory
 
 
@@ -271,10 +272,21 @@ def _read_group(robot: Robot, node: Node, tool_link: str) -> JointGroup:
             if key in node:
                 _link(robot, node[key])
         make = {"base_link": node["base_link"].string(), "tip": tool_link}
-    try:
-        return robot.group(**make)
-    except InvalidInput as error:
-        node.fail(str(error))
+    with node.blamed():
+        arm = robot.group(**make)
+    _check_speeds(node, arm)
+    return arm
+
+
+def _check_speeds(node: Node, arm: JointGroup) -> None:
+    """Every joint crosses its range in minutes: motions that take days have more samples than memory."""
+    travel = np.minimum(arm.upper - arm.lower, 2 * np.pi)
+    for name, way, speed in zip(arm.names, travel, arm.velocity_limits, strict=True):
+        if way > LONGEST_CROSSING * speed:
+            node.fail(
+                f"the joint {name} has a velocity of {speed:g} in its URDF: must be at least {way / LONGEST_CROSSING:.3g}, for it to cross "
+                f"its range, or a turn, in {LONGEST_CROSSING:g} s"
+            )
 
 
 def _read_home(node: Node, arm: JointGroup) -> np.ndarray:

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <utility>
 #include <vector>
 
@@ -40,8 +41,7 @@ class Sampler {
       : timing_(timing), velocity_limits_(velocity_limits), acceleration_limits_(acceleration_limits) {}
 
   JointTrajectory run(double period) {
-    require(timing_.duration() / period <= kMaxSamples, "sample_period", period,
-            "must leave at most 1e7 samples: the motion takes " + std::to_string(timing_.duration()) + " s");
+    if (timing_.duration() / period > kMaxSamples) refuse(period);
     samples_.push_back({0, timing_.at(0)});
     for (double end : break_times()) {
       const double begin = samples_.back().time;
@@ -52,6 +52,32 @@ class Sampler {
   }
 
  private:
+  [[noreturn]] void refuse(double period) const {
+    const auto [joint, way] = slowest_joint();
+    std::ostringstream message;
+    message << "sample_period = " << period << ": must leave at most 1e7 samples: the motion takes "
+            << timing_.duration() << " s, mostly for joint " << joint << ", which moves by " << way
+            << " with velocity_limits[" << joint << "] = " << velocity_limits_[joint] << " and acceleration_limits["
+            << joint << "] = " << acceleration_limits_[joint];
+    throw InvalidInput(message.str());
+  }
+
+  /// The joint whose way takes the longest at its own limits, and how far it moves.
+  std::pair<Eigen::Index, double> slowest_joint() const {
+    constexpr int kPieces = 100;
+    Eigen::VectorXd way = Eigen::VectorXd::Zero(velocity_limits_.size()), last = timing_.at(0).position;
+    for (int i = 1; i <= kPieces; ++i) {
+      const Eigen::VectorXd next = timing_.at(timing_.duration() * i / kPieces).position;
+      way += (next - last).cwiseAbs();
+      last = next;
+    }
+    Eigen::Index slowest = 0;
+    const Eigen::VectorXd times =
+        way.cwiseQuotient(velocity_limits_).cwiseMax(2 * way.cwiseQuotient(acceleration_limits_).cwiseSqrt());
+    times.maxCoeff(&slowest);
+    return {slowest, way[slowest]};
+  }
+
   /// Jump times and the end, none closer together than cubics can resolve. Of jumps that are, the last one stays: a
   /// sample's acceleration is that of what follows, and what lies between the jumps (a straight of a micrometre between
   /// two arcs) would stand for a whole interval.

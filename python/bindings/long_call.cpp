@@ -89,12 +89,13 @@ void LongCall::sleep_for_ever() {
 }
 
 void LongCall::hand_over_progress() {
-  std::optional<std::pair<std::string, double>> latest;
+  std::vector<std::pair<std::string, double>> latest;
   {
     std::lock_guard lock(mutex_);
     std::swap(latest, latest_);
   }
-  if (latest && !progress_.is_none()) progress_(latest->first, latest->second);
+  if (progress_.is_none()) return;
+  for (const auto& [stage, fraction] : latest) progress_(stage, fraction);
 }
 
 }  // namespace mmgrasp::python

@@ -10,6 +10,7 @@
 #include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "mmgrasp/core/monitor.hpp"
 #include "options.hpp"
@@ -26,7 +27,8 @@ class LongCall {
   explicit LongCall(py::object progress) : progress_(function_argument(std::move(progress), "progress")) {
     monitor_.progress = [this](const std::string& stage, double fraction) {
       std::lock_guard lock(mutex_);
-      latest_ = {stage, fraction};
+      if (latest_.empty() || latest_.back().first != stage) latest_.emplace_back(stage, fraction);
+      latest_.back().second = fraction;
     };
   }
 
@@ -68,7 +70,7 @@ class LongCall {
   std::mutex mutex_;
   std::condition_variable changed_;
   bool done_ = false;
-  std::optional<std::pair<std::string, double>> latest_;
+  std::vector<std::pair<std::string, double>> latest_;  // the last of each stage that was not handed over yet
 };
 
 /// Stacks of threads that are started from here on hold our calls also where the process has little (ulimit -s).

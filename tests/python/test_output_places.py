@@ -324,6 +324,35 @@ def test_the_cache_is_optional(
     assert names(tmp_path) == {"file"}
 
 
+@pytest.mark.slow
+def test_a_damaged_cache_is_built_anew_with_a_hint(
+    small_path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    scenario = mg.load_scenario(small_path)
+    scenario.reach = {"samples": 20_000}
+    sound = scenario.reach_database().arrays["configurations"].copy()
+    file = next(tmp_path.rglob("configurations.npy"))
+    good = file.read_bytes()
+    for at in (200, len(good) // 2, len(good) - 1):
+        bad = bytearray(good)
+        bad[at] ^= 16
+        file.write_bytes(bad)
+        damaged = mg.ReachDatabase.load(file.parent)
+        with pytest.raises(mg.IoError, match=r"configurations\.npy: corrupt: bytes"):
+            damaged.arrays["configurations"]
+        caplog.clear()
+        stages: list[str] = []
+        found = scenario.reach_database(lambda stage, fraction: stages.append(stage))
+        assert "is damaged: it is built anew" in caplog.text
+        assert "replacing a damaged reachability database" in stages
+        assert (found.arrays["configurations"] == sound).all()
+        assert file.read_bytes() == good
+    caplog.clear()
+    scenario.reach_database()
+    assert not caplog.text
+
+
 def test_a_cache_folder_that_is_not_absolute_is_ignored(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", "relative")
     monkeypatch.setenv("HOME", str(tmp_path))

@@ -28,6 +28,7 @@ TOP_OPTIONAL = (
     "arrival_covariance part_types gripper place_region floor obstacles allowed_collisions padding options reach"
 )
 FLOOR = "floor"
+REPLACING = "replacing a damaged reachability database"  # the stage that ReachDatabase.load_or_build reports
 LEAST_SAMPLES = 10_000  # of the database of what the arm reaches
 SHAPE_KEYS = "box cylinder sphere mesh shapes scale"
 
@@ -109,11 +110,19 @@ class Scenario:
     def reach_database(self, progress: Progress = None) -> ReachDatabase:
         """The arm's reachability database, from the cache or built now; without a usable cache it is built each time."""
         options = {"threads": self.options.get("threads", 0)} | self.reach
+        log = logging.getLogger("mmgrasp")
+
+        def hear(stage: str, fraction: float) -> None:
+            if stage == REPLACING:
+                log.warning("the reachability database in %s is damaged: it is built anew", _core.cache_folder())
+            if progress is not None:
+                progress(stage, fraction)
+
         try:
             check_folder(Path(_core.cache_folder()))
-            return ReachDatabase.load_or_build(self.setup.arm, _core.cache_folder(), progress=progress, **options)
+            return ReachDatabase.load_or_build(self.setup.arm, _core.cache_folder(), progress=hear, **options)
         except IoError as error:
-            logging.getLogger("mmgrasp").warning(
+            log.warning(
                 "%s; planning goes on without the cache: set XDG_CACHE_HOME to a folder that can be written", error
             )
             return ReachDatabase.build(self.setup.arm, progress=progress, **options)

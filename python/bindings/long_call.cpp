@@ -1,7 +1,5 @@
 #include "long_call.hpp"
 
-#include <pthread.h>
-
 #include <atomic>
 #include <chrono>
 #include <thread>
@@ -22,7 +20,6 @@ struct Waiting {
 };
 
 constexpr std::chrono::milliseconds kPoll(30);
-constexpr std::size_t kLeastStack = std::size_t{8} << 20;  // as Linux gives unless told otherwise [bytes]
 constexpr int kMostPolls = 100;  // The interpreter waits this often for calls that do not end.
 
 void end_calls() {
@@ -41,16 +38,6 @@ bool is_main_thread() {
 
 void end_calls_at_exit() {
   py::module_::import("atexit").attr("register")(py::cpp_function(&end_calls));
-}
-
-void give_threads_room() {
-  pthread_attr_t attributes;
-  if (pthread_getattr_default_np(&attributes) != 0) return;
-  std::size_t size = 0;
-  pthread_attr_getstacksize(&attributes, &size);
-  if (size < kLeastStack && pthread_attr_setstacksize(&attributes, kLeastStack) == 0)
-    pthread_setattr_default_np(&attributes);
-  pthread_attr_destroy(&attributes);
 }
 
 bool LongCall::wait() {
@@ -89,13 +76,12 @@ void LongCall::sleep_for_ever() {
 }
 
 void LongCall::hand_over_progress() {
-  std::vector<std::pair<std::string, double>> latest;
+  std::optional<std::pair<std::string, double>> latest;
   {
     std::lock_guard lock(mutex_);
     std::swap(latest, latest_);
   }
-  if (progress_.is_none()) return;
-  for (const auto& [stage, fraction] : latest) progress_(stage, fraction);
+  if (latest && !progress_.is_none()) progress_(latest->first, latest->second);
 }
 
 }  // namespace mmgrasp::python

@@ -10,7 +10,6 @@
 #include <string>
 #include <thread>
 #include <utility>
-#include <vector>
 
 #include "mmgrasp/core/monitor.hpp"
 #include "options.hpp"
@@ -27,8 +26,7 @@ class LongCall {
   explicit LongCall(py::object progress) : progress_(function_argument(std::move(progress), "progress")) {
     monitor_.progress = [this](const std::string& stage, double fraction) {
       std::lock_guard lock(mutex_);
-      if (latest_.empty() || latest_.back().first != stage) latest_.emplace_back(stage, fraction);
-      latest_.back().second = fraction;
+      latest_ = {stage, fraction};
     };
   }
 
@@ -70,11 +68,8 @@ class LongCall {
   std::mutex mutex_;
   std::condition_variable changed_;
   bool done_ = false;
-  std::vector<std::pair<std::string, double>> latest_;  // the last of each stage that was not handed over yet
+  std::optional<std::pair<std::string, double>> latest_;
 };
-
-/// Stacks of threads that are started from here on hold our calls also where the process has little (ulimit -s).
-void give_threads_room();
 
 /// Registers with Python's atexit that long calls of other threads end before the interpreter does.
 void end_calls_at_exit();

@@ -3,6 +3,7 @@
 #include "long_call.hpp"
 #include "mmgrasp/collision/world.hpp"
 #include "mmgrasp/robot/joint_group.hpp"
+#include "thread_stacks.hpp"
 
 namespace mmgrasp::python {
 

@@ -63,7 +63,14 @@ DOORS: dict[str, tuple[Path | dict[str, Any], Callable[[Path], object]]] = {
     "profile": (ASSETS / "robots" / "kr6like" / "kr6like.yaml", lambda path: read_gripper(str(path))),
     "sensors": (SENSORS, read_sensors),
     "map": (
-        {"image": "room.pgm", "resolution": 0.05, "origin": [0.0, 0.0, 0.0], "negate": 0, "occupied_thresh": 0.65, "free_thresh": 0.2},
+        {
+            "image": "room.pgm",
+            "resolution": 0.05,
+            "origin": [0.0, 0.0, 0.0],
+            "negate": 0,
+            "occupied_thresh": 0.65,
+            "free_thresh": 0.2,
+        },
         read_map,
     ),
 }

@@ -183,6 +183,22 @@ def test_bad_scenario_gets_one_message(
     assert not (tmp_path / "out").exists()
 
 
+def test_joints_that_crawl_are_refused(small: dict[str, Any], write: Callable[..., Path], tmp_path: Path) -> None:
+    """Motions of days have more samples than memory: joint and value are named, at the scenario's line."""
+    source = (ASSETS / "robots" / "fetchlike" / "fetchlike.urdf").read_text()
+    for velocity in ("0.0001", "1e-300"):
+        text, count = re.subn(
+            r'(<joint name="elbow_flex_joint".*?velocity=")[^"]*', rf"\g<1>{velocity}", source, flags=re.S
+        )
+        assert count == 1
+        (tmp_path / "slow.urdf").write_text(text)
+        scenario = edited(small, "robot.urdf", str(tmp_path / "slow.urdf"))
+        with pytest.raises(
+            mg.InvalidInput, match=rf"scenario\.yaml:\d+: robot\.group.*elbow_flex_joint .* {velocity} "
+        ):
+            mg.load_scenario(write(scenario))
+
+
 def test_part_larger_than_the_gripper(small: dict[str, Any], write: Callable[..., Path]) -> None:
     scenario = edited(small, "part_types.bracket.box", [0.12, 0.12, 0.12])
     scenario["trays"][0]["parts"] = [{"type": "bracket", "xyz": [0, 0]}]

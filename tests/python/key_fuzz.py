@@ -51,7 +51,7 @@ SENSORS = {
 def read_map(path: Path) -> object:
     """A map beside its header."""
     (path.parent / "room.pgm").write_bytes(b"P5 8 6 255 " + bytes(8 * 6))
-    document = Document("scenario", {"map": str(path), "height": 1.0}, {})
+    document = Document(str(path), {"map": str(path), "height": 1.0}, {(): 1})
     return read_floor_map(document.root)
 
 

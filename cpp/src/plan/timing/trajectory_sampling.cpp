@@ -15,6 +15,8 @@ namespace {
 constexpr double kJump = 0.004;          // Acceleration jumps above this part of a limit get a sample of their own.
 constexpr double kSmallestGap = 1e-5;    // Least time between samples at jumps [s].
 constexpr double kSmallestSplit = 2e-4;  // Shorter intervals are not halved [s].
+// Part of a limit by which a sample's acceleration may differ from those of the cubics before and after it.
+constexpr double kCubicFit = 5e-4;
 // Part of a limit by which the mean acceleration between two samples may lie beyond the accelerations at both.
 constexpr double kMaxMeanBeyondEnds = 0.5;
 
@@ -104,6 +106,24 @@ class Sampler {
     return false;
   }
 
+  /// Where the acceleration bends within an interval, the cubic that is executed begins with another one than the
+  /// sample says. Where it has jumped at the sample, or jumps in the interval, the cubic on one side still says what
+  /// the sample does.
+  bool differs_from_cubics(const Sample& a, const Sample& b) const {
+    const Sample* before = samples_.size() > 1 ? &samples_[samples_.size() - 2] : nullptr;
+    for (Eigen::Index j = 0; j < acceleration_limits_.size(); ++j) {
+      const double said = a.state.acceleration[j], most = kCubicFit * acceleration_limits_[j];
+      if (std::abs(said - ends(a, b, j).first) <= most) continue;
+      if (before == nullptr || std::abs(said - ends(*before, a, j).second) > most) return true;
+    }
+    return false;
+  }
+
+  static std::pair<double, double> ends(const Sample& a, const Sample& b, Eigen::Index j) {
+    const double h = b.time - a.time, mean = (b.state.position[j] - a.state.position[j]) / h;
+    return cubic_end_accelerations(mean, a.state.velocity[j], b.state.velocity[j], h);
+  }
+
   /// Appends the sample at `time`, after those that keep the cubics in between within limits.
   void append(double time) { append({time, timing_.at(time)}); }
   void append(Sample sample) {
@@ -112,7 +132,8 @@ class Sampler {
     const double interval = sample.time - previous.time;
     const Load load = hermite_load(previous, sample);
     const bool beyond = std::max(load.velocity, load.acceleration) > 1;
-    if ((beyond || hides_acceleration(previous, sample)) && interval > kSmallestSplit) {
+    const bool unlike = hides_acceleration(previous, sample) || differs_from_cubics(previous, sample);
+    if ((beyond || unlike) && interval > kSmallestSplit) {
       append(previous.time + 0.5 * interval);
       append(std::move(sample));
       return;

@@ -16,7 +16,10 @@ def main() -> int:
     try:
         run = _load()
     except Exception as error:
-        reason = str(error) or type(error).__name__
+        first: BaseException = error
+        while first.__cause__ is not None:  # what a library says of it may be a page
+            first = first.__cause__
+        reason = " ".join(str(first).split()) or type(first).__name__
         sys.stderr.write(f"mmgrasp: cannot be loaded: {reason} (too little memory, ulimit -v, has this effect, too)\n")
         return 2
     if interruptible:

@@ -271,7 +271,9 @@ def _read_floor(root: Node, obstacles: list[Obstacle]) -> float | None:
     height = root["floor"].number() if "floor" in root else 0.0
     for node, obstacle in zip(root["obstacles"].elements() if "obstacles" in root else [], obstacles, strict=False):
         if obstacle.name == FLOOR:
-            node["name"].fail("is that of the ground; give the obstacle another one, or say floor: none")
+            node["name"].fail(
+                f"the name {FLOOR!r} is that of the ground; give the obstacle another one, or say floor: none"
+            )
     return height
 
 

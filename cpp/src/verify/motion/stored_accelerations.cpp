@@ -15,10 +15,10 @@ constexpr double kFit = 1e-3;  // Share of the limit by which a stored accelerat
 constexpr double kDisagreement = 5, kMostByDisagreement = 0.02;
 constexpr double kShort = 5e-4;  // [s] Jumps that are nearer to each other have no sample of their own.
 
-/// Accelerations of the cubic between samples `i` and `i + 1` at its ends, and how exact these are for the digits that
-/// there are.
+/// Accelerations of the cubic between samples `i` and `i + 1` at its ends and its mean, and how exact these are for the
+/// digits that there are.
 struct CubicEnds {
-  double begin = 0, end = 0, rounding = 0;
+  double begin = 0, end = 0, mean = 0, rounding = 0;
 };
 
 CubicEnds cubic_ends(const CheckedMotion& motion, std::size_t i, Eigen::Index j) {
@@ -27,7 +27,7 @@ CubicEnds cubic_ends(const CheckedMotion& motion, std::size_t i, Eigen::Index j)
   const double v0 = motion.velocities[i][j], v1 = motion.velocities[i + 1][j];
   const double mean = (p1 - p0) / h;
   constexpr double kDigits = 20 * std::numeric_limits<double>::epsilon();
-  return {(6 * mean - 4 * v0 - 2 * v1) / h, (2 * v0 + 4 * v1 - 6 * mean) / h,
+  return {(6 * mean - 4 * v0 - 2 * v1) / h, (2 * v0 + 4 * v1 - 6 * mean) / h, (v1 - v0) / h,
           kDigits * (std::max(std::abs(p0), std::abs(p1)) / h + std::max(std::abs(v0), std::abs(v1))) / h};
 }
 
@@ -35,13 +35,22 @@ CubicEnds cubic_ends(const CheckedMotion& motion, std::size_t i, Eigen::Index j)
 double excess(const CheckedMotion& motion, std::size_t i, Eigen::Index j, double limit) {
   const double said = motion.accelerations[i][j];
   const std::size_t last = motion.times.size() - 1;
-  const CubicEnds before = cubic_ends(motion, i > 0 ? i - 1 : 0, j),
-                  after = cubic_ends(motion, std::min(i, last - 1), j);
-  const double off_before = i > 0 ? std::abs(said - before.end) : mmgrasp::detail::kInfinity;
-  const double off_after = i < last ? std::abs(said - after.begin) : mmgrasp::detail::kInfinity;
-  const double disagreement = i > 0 && i < last ? std::abs(before.end - after.begin) : mmgrasp::detail::kInfinity;
-  return std::min(off_before, off_after) - before.rounding - after.rounding - kFit * limit -
-         std::min(kDisagreement * disagreement, kMostByDisagreement * limit);
+  double off = mmgrasp::detail::kInfinity, disagreement = off, rounding = 0;
+  CubicEnds before, after;
+  if (i > 0) {
+    before = cubic_ends(motion, i - 1, j);
+    off = std::min({off, std::abs(said - before.end), std::abs(said - before.mean)});
+    rounding += before.rounding;
+  }
+  if (i < last) {
+    after = cubic_ends(motion, i, j);
+    off = std::min({off, std::abs(said - after.begin), std::abs(said - after.mean)});
+    rounding += after.rounding;
+  }
+  if (i == 0 || i == last) off = std::min(off, std::abs(said));  // it rests before and afterwards
+  if (i > 0 && i < last) disagreement = std::abs(before.end - after.begin);
+  if (std::isnan(said)) return mmgrasp::detail::kInfinity;
+  return off - rounding - kFit * limit - std::min(kDisagreement * disagreement, kMostByDisagreement * limit);
 }
 
 }  // namespace

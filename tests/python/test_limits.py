@@ -11,7 +11,7 @@ import pytest
 import yaml
 
 import mmgrasp as mg
-from conftest import REPOSITORY
+from conftest import ASSETS, REPOSITORY
 from mmgrasp.documents.reading import read_json, read_yaml
 from mmgrasp.documents.yaml_text import parse_yaml
 
@@ -181,12 +181,17 @@ def try_robot(small: dict[str, Any], folder: Path) -> None:
 
 def try_world(small: dict[str, Any], folder: Path) -> None:
     """As many bodies as memory holds: ten thousand are read, checked, and cost what lies near."""
-    robot = mg.Robot.load(small["robot"]["urdf"]) if Path(small["robot"]["urdf"]).exists() else None
     world = mg.World()
     for i in range(10_000):
         world.add_box(f"box {i}", size=(0.02, 0.02, 0.02), pose=mg.pose([5 + 0.05 * (i % 100), 0.05 * (i // 100), 0.5]))
     assert len(world.objects) == 10_000
-    assert robot is None or mg.CollisionChecker(robot, world) is not None
+    robot = mg.Robot.load(
+        ASSETS / "robots" / "kr6like" / "kr6like.urdf", ASSETS / "robots" / "kr6like" / "kr6like.srdf"
+    )
+    arm = robot.group("arm", tip="gripper_tcp")
+    checker = mg.CollisionChecker(robot, world, group=arm)
+    home = 0.5 * (arm.lower + arm.upper)
+    assert checker.is_free(home) == mg.CollisionChecker(robot, mg.World(), group=arm).is_free(home)
 
 
 TRIED: dict[str, Tried] = {

@@ -176,7 +176,7 @@ def test_a_place_that_can_no_longer_be_written_does_not_lose_the_plan(tmp_path: 
 
 
 def test_a_disk_that_is_full_does_not_lose_the_plan(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    made = tempfile.mkstemp
+    made: Any = tempfile.mkstemp
 
     def full(*arguments: Any, dir: Any = None, **more: Any) -> Any:
         if str(dir).startswith(str(tmp_path)) and not str(dir).startswith(str(tmp_path / "elsewhere")):
@@ -334,6 +334,11 @@ def test_a_damaged_cache_is_built_anew_with_a_hint(
     sound = scenario.reach_database().arrays["configurations"].copy()
     file = next(tmp_path.rglob("configurations.npy"))
     good = file.read_bytes()
+    stages: list[str] = []
+
+    def hear(stage: str, fraction: float) -> None:
+        stages.append(stage)
+
     for at in (200, len(good) // 2, len(good) - 1):
         bad = bytearray(good)
         bad[at] ^= 16
@@ -342,10 +347,10 @@ def test_a_damaged_cache_is_built_anew_with_a_hint(
         with pytest.raises(mg.IoError, match=r"configurations\.npy: corrupt: bytes"):
             damaged.arrays["configurations"]
         caplog.clear()
-        stages: list[str] = []
-        found = scenario.reach_database(lambda stage, fraction: stages.append(stage))
+        found = scenario.reach_database(hear)
         assert "is damaged: it is built anew" in caplog.text
         assert "replacing a damaged reachability database" in stages
+        stages.clear()
         assert (found.arrays["configurations"] == sound).all()
         assert file.read_bytes() == good
     caplog.clear()

@@ -22,7 +22,7 @@ std::string metres(double value) {
 }
 
 constexpr double kAdviceStep = 1e-5;  // Advised lengths are whole steps [m], so that texts and fields tell the same.
-constexpr double kDiscMargin = 1e-6;  // An advised disc is smaller than the largest one by this much at least [m].
+constexpr double kDiscMargin = 2e-6;  // An advised disc is smaller than the largest one by this much at least [m].
 
 /// A multiple of kAdviceStep with all its digits.
 std::string advised_metres(double value) {
@@ -210,7 +210,8 @@ Obstruction explain_region(const PartSupplyProblem& problem, const ReachDatabase
         "tray '" + region.tray +
         "': the largest disc of base poses from which every part can be grasped has a radius of " +
         advised_metres(obstruction.largest_uncertainty) + ", positioning_uncertainty is " +
-        six_digits(problem.options.positioning_uncertainty) + " m: lower it to that radius or position the base better (the part with the smallest region is '" +
+        six_digits(problem.options.positioning_uncertainty) +
+        " m: lower it to that radius or position the base better (the part with the smallest region is '" +
         obstruction.part + "')";
     return obstruction;
   }

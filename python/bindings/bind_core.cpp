@@ -1,4 +1,5 @@
 #include <exception>
+#include <system_error>
 
 #include "bindings.hpp"
 #include "mmgrasp/core/outcome.hpp"
@@ -62,6 +63,9 @@ void bind_errors(py::module_& m) {
       raise(error_types.error, e);
     } catch (const py::cast_error& e) {
       raise(error_types.invalid_input, unfit_value(e.what()));
+    } catch (const std::system_error& e) {
+      if (e.code() != std::errc::resource_unavailable_try_again) throw;  // of a thread that could not be started
+      PyErr_SetString(PyExc_MemoryError, "the system gives no more threads, or no memory for their stacks");
     }
   });
 }

@@ -86,7 +86,11 @@ py::array view(const py::object& owner, const T* data, std::vector<py::ssize_t> 
 }
 
 NamedArrays arrays(const py::object& self) {
-  const ReachArrays a = reach_arrays(self.cast<const ReachDatabase&>());
+  const auto& database = self.cast<const ReachDatabase&>();
+  const ReachArrays a = [&] {
+    const py::gil_scoped_release release;
+    return checked_reach_arrays(database);
+  }();
   return py::dict("positions"_a = view(self, a.position_cells, {a.positions, 3}),
                   "position_first"_a = view(self, a.position_first, {a.positions + 1}),
                   "rotation_ids"_a = view(self, a.rotation_ids, {a.cells}),
@@ -261,7 +265,9 @@ void bind_reach(py::module_& m) {
                 [&](const Monitor& monitor) { return ReachDatabase::load_or_build(group, read, folder, monitor); });
           },
           py::arg("arm"), py::arg("cache_dir"), py::kw_only(), py::arg("progress") = py::none(),
-          ("The database of this arm and these options from the cache folder; built and stored when it is not there." +
+          ("The database of this arm and these options from the cache folder; built and stored when it is not there. One "
+           "that is damaged is built anew in its place, which `progress` hears as the stage 'replacing a damaged "
+           "reachability database'." +
            option_help(reach_fields()))
               .c_str())
       .def_static(
@@ -297,7 +303,8 @@ void bind_reach(py::module_& m) {
           "difference",
           [](const ReachDatabase& db, const JointGroup& arm) { return db.difference(with_sampled_pairs(arm)); },
           py::arg("arm"), "What of the arm has changed since the build, in words; empty when nothing.")
-      .def_property_readonly("arrays", &arrays, "Read-only views of the database's arrays, by file name.")
+      .def_property_readonly("arrays", &arrays, "Read-only views of the database's arrays, by file name. Raises IoError where configurations differ from "
+                             "their checksums, which are compared the first time.")
       .def_property_readonly("path", &ReachDatabase::path, "The folder; empty for a database in memory only.")
       .def_property_readonly(
           "joint_lower", [](const ReachDatabase& db) { return reach_arrays(db).joint_lower; },

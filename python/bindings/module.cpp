@@ -3,6 +3,7 @@
 #include "long_call.hpp"
 #include "mmgrasp/collision/world.hpp"
 #include "mmgrasp/robot/joint_group.hpp"
+#include "thread_stacks.hpp"
 
 namespace mmgrasp::python {
 
@@ -105,4 +106,5 @@ PYBIND11_MODULE(_core, m) {
   bind_verify(m);
   refuse_bare_objects(m);
   end_calls_at_exit();
+  give_threads_room();
 }

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import random
+import re
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -13,8 +14,12 @@ import yaml
 
 import mmgrasp as mg
 from mmgrasp._files import ASSETS
+from mmgrasp.documents.reading import Document
+from mmgrasp.frames.sensors import read_sensors
 from mmgrasp.grippers.assembly_file import load_assembly
 from mmgrasp.pipes import load_pipe_problem
+from mmgrasp.scenario.floor_map import read_floor_map
+from mmgrasp.scenario.robot_section import read_gripper
 
 WRONG: list[Any] = [
     *(None, True, "", "x", "\x1b[31m", "a" * 300, -1, 0, 0.5, 1e7, -1e-9, 1e-300, 1e300, float("nan"), float("inf"), 10**400),
@@ -22,11 +27,54 @@ WRONG: list[Any] = [
 ]  # fmt: skip
 DROPPED, MISSPELT = object(), object()
 
-DOORS: dict[str, tuple[Path, Callable[[Path], object]]] = {
+SENSORS = {
+    "version": 1,
+    "sensors": {
+        "left": {
+            "folder": "left",
+            "intrinsics": {"width": 160, "height": 120, "fx": 180.0, "fy": 180.0, "cx": 79.5, "cy": 59.5},
+            "range": [0.2, 2.0],
+            "depth_scale": 1000,
+            "noise": {"model": "stereo", "baseline": 0.05, "disparity_sigma": 0.1},
+            "systematic": 0.001,
+            "systematic_scale": 0.002,
+            "mounted_on": {"link": "tool", "pose": {"xyz": [0.1, 0.0, 0.0], "quat_xyzw": [0, 0, 0, 1]}},
+            "poses": "world_to_camera",
+            "pose_error": {"translation": 0.001, "rotation": 0.002},
+        },
+        "right": {"noise": {"model": "polynomial", "constant": 0.001}},
+    },
+}
+"""A sensors file with all that may stand in one."""
+
+
+def read_map(path: Path) -> object:
+    """A map beside its header."""
+    (path.parent / "room.pgm").write_bytes(b"P5 8 6 255 " + bytes(8 * 6))
+    document = Document(str(path), {"map": str(path), "height": 1.0}, {(): 1})
+    return read_floor_map(document.root)
+
+
+DOORS: dict[str, tuple[Path | dict[str, Any], Callable[[Path], object]]] = {
     "scenario": (ASSETS / "scenarios" / "storeroom.yaml", mg.load_scenario),
+    "scanned": (ASSETS / "scenarios" / "scanned_tray.yaml", mg.load_scenario),
     "pipe": (ASSETS / "pipes" / "pipe1.yaml", load_pipe_problem),
     "assembly": (ASSETS / "assemblies" / "pulley.yaml", load_assembly),
+    "profile": (ASSETS / "robots" / "kr6like" / "kr6like.yaml", lambda path: read_gripper(str(path))),
+    "sensors": (SENSORS, read_sensors),
+    "map": (
+        {
+            "image": "room.pgm",
+            "resolution": 0.05,
+            "origin": [0.0, 0.0, 0.0],
+            "negate": 0,
+            "occupied_thresh": 0.65,
+            "free_thresh": 0.2,
+        },
+        read_map,
+    ),
 }
+"""What reads a kind of YAML file, and a sound file of the kind, or its values."""
 
 Place = tuple[str | int, ...]
 
@@ -60,9 +108,9 @@ def tries(document: Any) -> list[tuple[Place, Any]]:
 
 
 def fuzz(door: str, folder: Path, most: int | None = None, seed: int = 1) -> tuple[int, int]:
-    """How many changed files were read, and how many refused with a message that names the file and has nothing for a terminal in it. Anything else is raised."""
+    """How many changed files were read, and how many refused with a message that names file and line and has nothing for a terminal in it. Anything else is raised."""
     source, load = DOORS[door]
-    document = yaml.safe_load(source.read_text())
+    document = source if isinstance(source, dict) else yaml.safe_load(source.read_text())
     chosen = tries(document)
     if most is not None:
         chosen = random.Random(seed).sample(chosen, most)
@@ -74,7 +122,7 @@ def fuzz(door: str, folder: Path, most: int | None = None, seed: int = 1) -> tup
             load(file)
             taken += 1
         except mg.Error as error:
-            assert file.name in str(error), (place, value, str(error))
+            assert re.search(rf"{re.escape(file.name)}:\d+: ", str(error)), (place, value, str(error))
             assert "\x1b" not in str(error), (place, value)
             refused += 1
         except Exception as error:

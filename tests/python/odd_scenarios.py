@@ -1,11 +1,13 @@
 """Odd scenarios drawn at random, planned, and their plans checked: what `plan` calls solved its own `verify` never refuses.
 
-As a script: `odd_scenarios.py [TRIES [SEED [FOLDER]]]` prints what each came to and keeps those that broke the rule.
+As a script: `odd_scenarios.py [TRIES [SEED [FOLDER]]]` prints what each came to and keeps those that broke the rule. With `advice` as a last
+word each asks for more room than there is, and then for just what it was told there is.
 """
 
 from __future__ import annotations
 
 import copy
+import re
 import sys
 import tempfile
 import time
@@ -83,10 +85,34 @@ def try_out(scenario: dict[str, Any], folder: Path) -> tuple[str, list[str]]:
     return "solved", [str(fault) for fault in verdict.faults]
 
 
+ADVICE = re.compile(r"has a radius of ([0-9.]+) m, positioning_uncertainty is")
+
+
+def follow_advice(scenario: dict[str, Any], folder: Path) -> tuple[str, list[str]]:
+    """Asks for more room than there is, then for just what the answer says there is: what became of that."""
+    path = folder / "scenario.yaml"
+    path.write_text(yaml.safe_dump({**scenario, "positioning_uncertainty": 0.9}, sort_keys=False))
+    try:
+        plan = mg.plan_part_supply(path)
+    except mg.Error:
+        return "refused", []
+    said = [float(found[1]) for o in plan.obstructions if (found := ADVICE.search(o.message))]
+    if plan.outcome == mg.Outcome.solved or not said or len(said) < len(plan.obstructions):
+        return "no advice", []
+    outcome, faults = try_out({**scenario, "positioning_uncertainty": min(said)}, folder)
+    if outcome == "solved":
+        return outcome, faults
+    plan = mg.plan_part_supply(path)
+    again = [o.message for o in plan.obstructions if o.stage in ("region", "robustness")]
+    return outcome, again
+
+
 def main() -> int:
-    tries = int(sys.argv[1]) if len(sys.argv) > 1 else 100
-    seed = int(sys.argv[2]) if len(sys.argv) > 2 else 1
-    kept = Path(sys.argv[3]) if len(sys.argv) > 3 else Path(tempfile.mkdtemp())
+    words = [word for word in sys.argv[1:] if word != "advice"]
+    tries = int(words[0]) if words else 100
+    seed = int(words[1]) if len(words) > 1 else 1
+    kept = Path(words[2]) if len(words) > 2 else Path(tempfile.mkdtemp())
+    attempt = follow_advice if "advice" in sys.argv else try_out
     outcomes: Counter[str] = Counter()
     broken = 0
     for number in range(seed, seed + tries):
@@ -94,7 +120,7 @@ def main() -> int:
         begun = time.monotonic()
         with tempfile.TemporaryDirectory() as folder:
             try:
-                outcome, faults = try_out(scenario, Path(folder))
+                outcome, faults = attempt(scenario, Path(folder))
             except Exception as error:  # what the search is for
                 outcome, faults = type(error).__name__, [str(error)]
         outcomes[outcome] += 1

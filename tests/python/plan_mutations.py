@@ -28,18 +28,22 @@ HARMLESS: Harmless = {
     "grid.nx": ("more, less", "one column of empty cells at the border, as an arm of another reach would need"),
     "grid.ny": ("more, less", "one row of empty cells, as for columns"),
     "stops[].arrivals.served": ("more, less", "one arrival of 2000: other draws differ by more"),
+    "picks[].motions[].opening": (
+        "more, less",
+        "of the way back: any opening that the fingers have room for will do, and is checked",
+    ),
+    "picks[].motions[].velocities[]": ("swapped", "nearly those of the next sample"),
+    "picks[].motions[].accelerations[]": ("swapped", "nearly those of the next sample"),
     "picks[].motions[].accelerations[][]": (
-        "more, less, far",
-        "positions and velocities decide; one that is off by less than the limit may be where accelerations jump",
+        "sign, zero, doubled",
+        "one that is nearly zero, below a thousandth of its limit; or where it jumps as the interval before has it",
     ),
     "drive_by": ("removed", "the plan holds with it and without it"),
     "drive_by.motions": ("dropped, emptied", "each is checked by itself, and the plan holds without it"),
     "drive_by.motions[]": ("removed", "as for the list"),
     "drive_by.motions[].accelerations[]": ("swapped", "nearly those of the next sample"),
-    "drive_by.motions[].accelerations[][]": (
-        "more, less, sign, zero",
-        "by half a hundredth of a limit, of x and y (which change between samples) a twentieth; or as the sample before or after has it",
-    ),
+    "drive_by.motions[].velocities[][]": ("sign, zero, doubled", "one that is nearly zero"),
+    "drive_by.motions[].accelerations[][]": ("sign, zero, doubled", "as for picks"),
 }
 """Changes that may go unnoticed, and why they do no harm."""
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -130,5 +131,6 @@ def test_mistakes_in_the_file_are_named(
     assert main(["grippers", str(file), "-o", str(tmp_path / "out")]) == 2
     error = capsys.readouterr().err
     assert message in " ".join(error.split())
+    assert re.search(rf"{re.escape(str(file))}:\d+: ", error)
     assert "Traceback" not in error
     assert not (tmp_path / "out" / "result.json").exists()

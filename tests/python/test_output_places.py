@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
+import shutil
 import signal
 import stat
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -119,6 +122,85 @@ def test_a_run_that_fails_leaves_the_old_plan(tmp_path: Path) -> None:
         broken()
     assert names(tmp_path) == {"plan.json", LIST}
     assert (tmp_path / "plan.json").read_text() == "1"
+
+
+def fill_late(folder: OutputFolder) -> str:
+    """Writes a plan after something happened to the folder; the message, and what it says of where the plan is holds."""
+    with pytest.raises(mg.IoError) as caught:
+        folder.fill(lambda draft: write_file(draft / "plan.json", "ours"))
+    message = str(caught.value)
+    kept = Path(message.rsplit(" is in ", 1)[1])
+    assert (kept / "plan.json").read_text() == "ours"
+    assert names(kept) == {"plan.json", LIST}
+    shutil.rmtree(kept)
+    return message
+
+
+@pytest.mark.parametrize("name", ["plan.json", "report.html", "stop_7.png", "trajectories/a.csv", LIST])
+@pytest.mark.parametrize("before", [False, True])
+def test_what_somebody_writes_in_the_meantime_is_not_replaced(tmp_path: Path, name: str, before: bool) -> None:
+    out = tmp_path / "out"
+    if before:
+        fill(out, plan_json="1", trajectories__a_csv="1")
+    folder = OutputFolder(out)
+    (out / name).parent.mkdir(parents=True, exist_ok=True)
+    (out / name).write_text("theirs")
+    others = {n: (out / n).read_text() for n in names(out)}
+    message = fill_late(folder)
+    assert name in message and "somebody else in the meantime" in message
+    assert {n: (out / n).read_text() for n in names(out)} == others
+    assert [p.name for p in tmp_path.iterdir()] == ["out"]
+
+
+def test_two_runs_into_one_folder_lose_neither_plan(tmp_path: Path) -> None:
+    first, second = OutputFolder(tmp_path / "out"), OutputFolder(tmp_path / "out")
+    second.fill(lambda draft: write_file(draft / "plan.json", "theirs"))
+    assert "plan.json" in fill_late(first)
+    assert (tmp_path / "out" / "plan.json").read_text() == "theirs"
+    second.fill(lambda draft: write_file(draft / "plan.json", "again"))
+    assert (tmp_path / "out" / "plan.json").read_text() == "again"
+
+
+@pytest.mark.parametrize("what", ["a file", "below a file", "a link loop"])
+def test_a_place_that_can_no_longer_be_written_does_not_lose_the_plan(tmp_path: Path, what: str) -> None:
+    out = tmp_path / "some" / "out"
+    folder = OutputFolder(out)
+    if what == "a file":
+        out.parent.mkdir()
+        out.write_text("theirs")
+    elif what == "below a file":
+        out.parent.write_text("theirs")
+    else:
+        out.parent.symlink_to(out.parent)
+    assert "cannot be written" in fill_late(folder)
+
+
+def test_a_disk_that_is_full_does_not_lose_the_plan(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    made: Any = tempfile.mkstemp
+
+    def full(*arguments: Any, dir: Any = None, **more: Any) -> Any:
+        if str(dir).startswith(str(tmp_path)) and not str(dir).startswith(str(tmp_path / "elsewhere")):
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        return made(*arguments, dir=dir, **more)
+
+    (tmp_path / "elsewhere").mkdir()
+    folder = OutputFolder(tmp_path / "out")
+    monkeypatch.setattr(tempfile, "mkstemp", full)
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "elsewhere"))
+    assert "No space left" in fill_late(folder)
+
+
+def test_pictures_that_fail_do_not_lose_the_plan(tmp_path: Path) -> None:
+    folder = OutputFolder(tmp_path)
+    folder.fill(lambda draft: write_file(draft / "plan.json", "ours"))
+    for error in (MemoryError(), ImportError("no such library"), OSError(errno.ENOSPC, "No space left")):
+        with pytest.raises(mg.IoError, match=r"the results are in .*, without"), folder.illustrated() as draft:
+            write_file(draft / "stop_1.png", "half")
+            raise error
+        assert names(tmp_path) == {"plan.json", LIST}
+    with folder.illustrated() as draft:
+        write_file(draft / "stop_1.png", "whole")
+    assert names(tmp_path) == {"plan.json", "stop_1.png", LIST}
 
 
 def bad_folders(tmp: Path) -> dict[str, Path]:
@@ -240,6 +322,40 @@ def test_the_cache_is_optional(
     assert isinstance(scenario.reach_database(), mg.ReachDatabase)
     assert "set XDG_CACHE_HOME" in caplog.text
     assert names(tmp_path) == {"file"}
+
+
+@pytest.mark.slow
+def test_a_damaged_cache_is_built_anew_with_a_hint(
+    small_path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    scenario = mg.load_scenario(small_path)
+    scenario.reach = {"samples": 20_000}
+    sound = scenario.reach_database().arrays["configurations"].copy()
+    file = next(tmp_path.rglob("configurations.npy"))
+    good = file.read_bytes()
+    stages: list[str] = []
+
+    def hear(stage: str, fraction: float) -> None:
+        stages.append(stage)
+
+    for at in (200, len(good) // 2, len(good) - 1):
+        bad = bytearray(good)
+        bad[at] ^= 16
+        file.write_bytes(bad)
+        damaged = mg.ReachDatabase.load(file.parent)
+        with pytest.raises(mg.IoError, match=r"configurations\.npy: corrupt: bytes"):
+            damaged.arrays["configurations"]
+        caplog.clear()
+        found = scenario.reach_database(hear)
+        assert "is damaged: it is built anew" in caplog.text
+        assert "replacing a damaged reachability database" in stages
+        stages.clear()
+        assert (found.arrays["configurations"] == sound).all()
+        assert file.read_bytes() == good
+    caplog.clear()
+    scenario.reach_database()
+    assert not caplog.text
 
 
 def test_a_cache_folder_that_is_not_absolute_is_ignored(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

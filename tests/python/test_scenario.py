@@ -177,10 +177,26 @@ def test_bad_scenario_gets_one_message(
     error = [line for line in message.splitlines() if line.startswith("mmgrasp: ")]
     assert len(error) == 1, message
     assert "Traceback" not in message
-    assert file.name in error[0]
+    assert re.search(rf"{file.name}:\d+: ", error[0])
     for piece in pieces:
         assert piece in error[0]
     assert not (tmp_path / "out").exists()
+
+
+def test_joints_that_crawl_are_refused(small: dict[str, Any], write: Callable[..., Path], tmp_path: Path) -> None:
+    """Motions of days have more samples than memory: joint and value are named, at the scenario's line."""
+    source = (ASSETS / "robots" / "fetchlike" / "fetchlike.urdf").read_text()
+    for velocity in ("0.0001", "1e-300"):
+        text, count = re.subn(
+            r'(<joint name="elbow_flex_joint".*?velocity=")[^"]*', rf"\g<1>{velocity}", source, flags=re.S
+        )
+        assert count == 1
+        (tmp_path / "slow.urdf").write_text(text)
+        scenario = edited(small, "robot.urdf", str(tmp_path / "slow.urdf"))
+        with pytest.raises(
+            mg.InvalidInput, match=rf"scenario\.yaml:\d+: robot\.group.*elbow_flex_joint .* {velocity} "
+        ):
+            mg.load_scenario(write(scenario))
 
 
 def test_part_larger_than_the_gripper(small: dict[str, Any], write: Callable[..., Path]) -> None:

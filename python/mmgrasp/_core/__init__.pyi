@@ -1451,7 +1451,7 @@ class ReachDatabase:
     @staticmethod
     def load_or_build(arm: JointGroup, cache_dir: str | os.PathLike[str], *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, samples: int = 2000000, position_cell: float = 0.1, rotation_cell: float = 0.55, max_per_cell: int = 16, min_manipulability: float = 0.02, thinning: float = 0.0, seed: int = 1, threads: int = 0) -> ReachDatabase:
         """
-        The database of this arm and these options from the cache folder; built and stored when it is not there.
+        The database of this arm and these options from the cache folder; built and stored when it is not there. One that is damaged is built anew in its place, which `progress` hears as the stage 'replacing a damaged reachability database'.
         
         Keyword options:
             samples: int = 2000000  # arm configurations drawn
@@ -1561,7 +1561,7 @@ class ReachDatabase:
     @property
     def arrays(self) -> dict[str, numpy.typing.NDArray[typing.Any]]:
         """
-        Read-only views of the database's arrays, by file name.
+        Read-only views of the database's arrays, by file name. Raises IoError where configurations differ from their checksums, which are compared the first time.
         """
     @property
     def cell_count(self) -> int:

@@ -39,8 +39,7 @@ def run_arrive(arguments: argparse.Namespace, console: Console) -> int:
             progress=report,
         )
         if folder is not None:
-            with folder.filled() as draft:
-                found.save(draft)
+            folder.fill(found.save)
     if arguments.json:
         print(json.dumps(found.to_dict(), indent=1, allow_nan=False))
     else:

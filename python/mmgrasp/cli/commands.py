@@ -59,14 +59,13 @@ def run_plan(arguments: argparse.Namespace, console: Console) -> int:
             arguments.scenario, robot=arguments.robot, seed=arguments.seed, threads=arguments.threads, progress=report
         )
         plan = plan_part_supply(scenario, progress=report)
-        with folder.filled() as draft:  # a plan of its own, whatever becomes of the motions in passing
-            page = write_outputs(plan, draft, report, pictures=not arguments.no_pictures)
+        page = write_outputs(plan, folder, report, pictures=not arguments.no_pictures)
         passing = None
         if arguments.drive_by and plan.outcome == Outcome.solved:
             passing = plan_drive_by_picks(plan, progress=report)
-            with folder.filled(added=True) as draft:
-                passing.save(draft)
-                if not arguments.no_pictures:
+            folder.fill(passing.save, added=True)
+            if not arguments.no_pictures:
+                with folder.illustrated() as draft:
                     write_file(draft / "report.html", report_page(passing.plan_to_dict(), folder.path, plan.timings))
     if plan.outcome != Outcome.solved:
         console.print(f"no plan: {plan.outcome.name.replace('_', ' ')}", style="bold red", markup=False)
@@ -80,24 +79,30 @@ def run_plan(arguments: argparse.Namespace, console: Console) -> int:
     return exit_code(plan.outcome)
 
 
-def write_outputs(plan: ScenarioPlan, out: Path, report: Callable[[str, float], None], pictures: bool) -> str:
-    """Writes everything into the folder and returns the name of the page to look at."""
+def write_outputs(
+    plan: ScenarioPlan, folder: OutputFolder, report: Callable[[str, float], None], pictures: bool
+) -> str:
+    """Writes the plan, then, so that it is there whatever becomes of them, pictures and report; returns the name of the page to look at."""
     report("writing", 0.0)
-    path = plan.save(out / "plan.json")
     rows = [{"stage": stage, "seconds": seconds} for stage, seconds in plan.timings]
-    write_file(out / "timings.json", json.dumps(rows, indent=1) + "\n")
-    plan.save_trajectories(out / "trajectories")
+
+    def write_plan(draft: Path) -> None:
+        plan.save(draft / "plan.json")
+        write_file(draft / "timings.json", json.dumps(rows, indent=1) + "\n")
+        plan.save_trajectories(draft / "trajectories")
+
+    folder.fill(write_plan)
     if pictures:
         from ..viz.pictures import write_pictures
 
         content = plan.to_dict()
         report("writing", 0.3)
-        write_pictures(content, out)
-        report("writing", 0.9)
-        path = out / "report.html"
-        write_file(path, report_page(content, out, plan.timings))
+        with folder.illustrated() as draft:
+            write_pictures(content, draft)
+            report("writing", 0.9)
+            write_file(draft / "report.html", report_page(content, draft, plan.timings))
     report("writing", 1.0)
-    return path.name
+    return "report.html" if pictures else "plan.json"
 
 
 def report_page(content: dict[str, Any], pictures: Path, timings: Sequence[tuple[str, float]]) -> str:

@@ -24,8 +24,8 @@ def run_grippers(arguments: argparse.Namespace, console: Console) -> int:
         report("writing", 0.0)
         from ..viz.gripper_report import gripper_report_html
 
-        with folder.filled() as draft:
-            write_results(plan, draft)
+        folder.fill(lambda draft: write_results(plan, draft))
+        with folder.illustrated() as draft:
             if not arguments.no_pictures:
                 from ..viz.gripper_pictures import write_gripper_pictures
 

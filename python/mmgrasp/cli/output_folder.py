@@ -7,12 +7,12 @@ import json
 import os
 import shutil
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from fnmatch import fnmatchcase
 from pathlib import Path, PurePosixPath
 
-from .._core import InvalidInput, IoError
-from .._files import DRAFT, check_folder, read_text, temporary_room, write_file
+from .._core import Error, InvalidInput, IoError
+from .._files import DRAFT, check_folder, printable, read_text, temporary_room, write_file
 from .signals import uninterrupted
 
 LIST = "files.json"
@@ -47,7 +47,7 @@ class OutputFolder:
 
     Everything is written beside its place and moved there at the end; what files.json lists of an earlier run goes. A folder that holds
     files under our names which it does not list is refused: they could be somebody's, and played for the new run's. So is one
-    whose files.json is that of another command.
+    whose files.json is that of another command. What somebody else puts under our names while the command works is not replaced either.
     """
 
     def __init__(self, path: Path, own: tuple[str, ...] = PLAN_FILES, folder: str = "trajectories") -> None:
@@ -65,6 +65,32 @@ class OutputFolder:
             raise IoError(
                 f"{path}: holds {names}, which {LIST} there does not list: remove them or choose another folder"
             )
+        self._known = self._marks()
+
+    def fill(self, write: Callable[[Path], object], *, added: bool = False) -> None:
+        """Has `write` fill the folder (see `filled`). Where that fails, what was made is not lost: it is written into another folder, and the
+        IoError that is raised names it."""
+        try:
+            with self.filled(added=added) as draft:
+                write(draft)
+        except IoError as error:
+            kept = self._kept_elsewhere(write)
+            if kept is None:
+                raise
+            raise IoError(f"{error}; what was to be written there is in {printable(str(kept))}") from None
+
+    @contextlib.contextmanager
+    def illustrated(self) -> Iterator[Path]:
+        """As `filled`, for pictures and pages of what the folder holds already. Raises IoError that says so where they fail."""
+        try:
+            with self.filled(added=True) as draft:
+                yield draft
+        except BrokenPipeError:
+            raise
+        except (Error, OSError, MemoryError, ImportError) as error:
+            reason = "out of memory" if isinstance(error, MemoryError) else error
+            where = printable(str(self.path))
+            raise IoError(f"{reason}: the results are in {where}, without all of their pictures and report") from None
 
     @contextlib.contextmanager
     def filled(self, *, added: bool = False, replacing: str = "") -> Iterator[Path]:
@@ -72,7 +98,10 @@ class OutputFolder:
 
         `added`: to what is there already, instead of in the place of everything; older files of the pattern `replacing` go all the same.
         """
-        self.path.mkdir(parents=True, exist_ok=True)
+        try:
+            self.path.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise IoError(f"{self.path}: cannot be written: {error.strerror}") from None
         for left in self.path.glob(f"{DRAFT}*"):  # of a run that was killed
             shutil.rmtree(left, ignore_errors=True)
         with _removed_draft(self.path) as draft:
@@ -88,6 +117,7 @@ class OutputFolder:
 
     def _take_over(self, draft: Path, added: bool, replacing: str) -> None:
         written = {str(p.relative_to(draft).as_posix()) for p in draft.rglob("*") if p.is_file()} | {LIST}
+        self._refuse_what_came()
         old = self._listed()
         new = written | {name for name in old if added and not fnmatchcase(name, replacing)}
         self._write_list(old | new)  # whoever is killed between here and the end leaves only files that are listed
@@ -100,6 +130,41 @@ class OutputFolder:
             with contextlib.suppress(OSError):
                 (self.path / name).parent.rmdir()
         self._write_list(new)
+        self._known = self._marks()
+
+    def _refuse_what_came(self) -> None:
+        """Raises IoError where, since the folder was last looked at, somebody wrote a file under a name of ours."""
+        came = sorted(name for name, mark in self._marks().items() if self._known.get(name) != mark)
+        if came:
+            names = ", ".join(came[:3]) + (f" and {len(came) - 3} more" if len(came) > 3 else "")
+            raise IoError(
+                f"{printable(str(self.path))}: {names}: written by somebody else in the meantime, and left alone"
+            )
+
+    def _marks(self) -> dict[str, tuple[int, int, int]]:
+        """What tells each file under a name of ours from one that took its place."""
+        marks = {}
+        for name in self._own_files():
+            with contextlib.suppress(FileNotFoundError):
+                found = os.lstat(self.path / name)
+                marks[name] = (found.st_ino, found.st_mtime_ns, found.st_size)
+        return marks
+
+    def _kept_elsewhere(self, write: Callable[[Path], object]) -> Path | None:
+        """A new folder beside this one, or else among the temporary files, with what could not be written here; None where that fails, too."""
+        for beside in (self.path.parent, None):
+            try:
+                place = Path(tempfile.mkdtemp(dir=beside, prefix=f"{self.path.name[:50]}."))
+            except OSError:
+                continue
+            try:
+                with OutputFolder(place, self._own, self._folder).filled() as draft:
+                    write(draft)
+            except IoError:
+                shutil.rmtree(place, ignore_errors=True)
+            else:
+                return place
+        return None
 
     def _write_list(self, names: set[str]) -> None:
         write_file(self.path / LIST, json.dumps({"format": "mmgrasp-files", "files": sorted(names)}, indent=1) + "\n")

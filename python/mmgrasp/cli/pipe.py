@@ -31,14 +31,14 @@ def run_pipe(arguments: argparse.Namespace, console: Console) -> int:
         report("grasps", 0.0)
         plan = plan_pipe(problem, progress=report)
         report("writing", 0.0)
-        with folder.filled() as draft:
-            write_tables(plan, draft)
+        folder.fill(lambda draft: write_tables(plan, draft))
+        from ..viz.pipe_report import pipe_report_html
+
+        with folder.illustrated() as draft:
             if not arguments.no_pictures:
                 from ..viz.pipe_pictures import write_pipe_pictures
 
                 write_pipe_pictures(plan, draft, report)
-            from ..viz.pipe_report import pipe_report_html
-
             write_file(draft / "report.html", pipe_report_html(plan, draft))
         report("writing", 1.0)
     print_answer(arguments, console, result_to_dict(plan), lambda: _print(plan, console))

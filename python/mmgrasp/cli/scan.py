@@ -110,8 +110,7 @@ def _write(
 ) -> dict[str, Any]:
     """The map first, so that it is there whatever becomes of the rest; then what is made of it."""
     report("writing the map", 0.0)
-    with folder.filled() as draft:
-        _save(scan, draft, MAP)
+    folder.fill(lambda draft: _save(scan, draft, MAP))
     report("mesh", 0.0)
     mesh, sigmas = scan.sdf.mesh()
     points, triangles = mesh.vertices, mesh.triangles
@@ -119,7 +118,7 @@ def _write(
     found, objects = _objects(scan, frames, arguments.up, points, vertex_normals(points, triangles), sigmas)
     summary = scan_summary(scan, frames, sigmas, objects)
     report("writing", 0.0)
-    with folder.filled(added=True) as draft:
+    with folder.illustrated() as draft:
         write_ply(draft / "mesh.ply", points, triangles, sigmas)
         write_file(draft / "objects.json", json.dumps(objects, indent=1, allow_nan=False) + "\n")
         if not arguments.no_pictures:

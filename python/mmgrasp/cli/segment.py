@@ -40,11 +40,12 @@ def run_segment(arguments: argparse.Namespace, console: Console) -> int:
         content = segments_to_dict(arguments, mesh, size, found, primitives)
         if folder is not None:
             report("writing", 0.0)
-            with folder.filled() as draft:
-                write_file(draft / "segments.json", json.dumps(content, indent=1, allow_nan=False) + "\n")
-                if not arguments.no_pictures:
-                    from ..viz.segment_pictures import write_segment_pictures
+            text = json.dumps(content, indent=1, allow_nan=False) + "\n"
+            folder.fill(lambda draft: write_file(draft / "segments.json", text))
+            if not arguments.no_pictures:
+                from ..viz.segment_pictures import write_segment_pictures
 
+                with folder.illustrated() as draft:
                     write_segment_pictures(points, mesh.triangles, found.labels, found.diameters, draft)
             report("writing", 1.0)
     if arguments.json:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import difflib
 import json
 import math
@@ -13,7 +14,7 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from .._core import InvalidInput, pose
+from .._core import InvalidInput, IoError, pose
 from .._files import printable, read_text
 from .yaml_text import Key as Key
 from .yaml_text import bad_yaml as bad_yaml
@@ -103,6 +104,16 @@ class Node:
         """Raises InvalidInput: place, name, value (of a mapping the reader has its place) and the rule that it breaks."""
         shown = "" if isinstance(self.raw, Mapping) else f" = {_SHORT.repr(self.raw)}"
         raise InvalidInput(printable(f"{self.place}: {self.name}{shown}: {rule}"))
+
+    @contextlib.contextmanager
+    def blamed(self) -> Iterator[None]:
+        """What is refused within the block by code that knows no files is told with place and name of this value."""
+        try:
+            yield
+        except (InvalidInput, IoError) as error:
+            if self.document.source in str(error):
+                raise
+            raise type(error)(printable(f"{self.place}: {self.name}: {error}")) from None
 
     # --- mappings -------------------------------------------------------------------------------------------------
     def mapping(self, required: str = "", optional: str = "") -> Node:

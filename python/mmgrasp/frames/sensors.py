@@ -164,18 +164,16 @@ def _read_noise(node: Node, sensor: Sensor) -> DepthNoise:
     if model == "stereo":
         node.mapping("model baseline disparity_sigma" + ("" if sensor.intrinsics else " focal"), keys)
         focal = node["focal"].number(above=0) if "focal" in node else sensor.intrinsics.fx  # type: ignore[union-attr]
-        return DepthNoise.stereo(focal, node["baseline"].number(above=0), node["disparity_sigma"].number(above=0))
+        baseline, sigma = node["baseline"].number(above=0), node["disparity_sigma"].number(above=0)
+        with node.blamed():
+            return DepthNoise.stereo(focal, baseline, sigma)
     values = {key: node[key].number() for key in keys.split() if key in node}
-    try:
+    with node.blamed():
         return DepthNoise(**values)
-    except InvalidInput as error:
-        raise InvalidInput(f"{node.place}: {node.name}: {error}") from None
 
 
 def _check_noise(node: Node, sensor: Sensor) -> None:
     """The library's own rules over the camera's range; what they say does not depend on the intrinsics."""
     pinhole = PinholeCamera(nearest=sensor.nearest, farthest=sensor.farthest)
-    try:
+    with node.blamed():
         DepthCamera(pinhole, sensor.noise, sensor.name, sensor.systematic, sensor.systematic_scale)
-    except InvalidInput as error:
-        raise InvalidInput(f"{node.place}: {node.name}: {error}") from None

@@ -121,8 +121,13 @@ def load_assembly(path: str | os.PathLike[str]) -> Assembly:
     """
     file = shipped_assembly(path)
     root = read_yaml(file).root
+    with root.blamed():
+        return _read_assembly(root, str(file.resolve()))
+
+
+def _read_assembly(root: Node, source: str) -> Assembly:
     if not isinstance(root.raw, dict) or "format" not in root.raw:
-        raise InvalidInput(f"{root.document.source}: is no assembly: the key format: mmgrasp-assembly is missing")
+        raise InvalidInput(f"{root.place}: is no assembly: the key format: mmgrasp-assembly is missing")
     root["format"].choice("mmgrasp-assembly")
     root.read_version(1)
     root.mapping("format version name unit parts order actuators", "fingers holding options")
@@ -134,16 +139,20 @@ def load_assembly(path: str | os.PathLike[str]) -> Assembly:
         if part.name in parts:
             node["name"].fail("is there twice: parts must have names of their own")
         parts[part.name] = part
+    holding = _read_holding(root, scale)
+    for node in root["parts"].elements() if holding is not None else []:
+        if not parts[node["name"].raw].mesh.closed:
+            node.fail("must be a closed mesh for its weight to be known (holding)")
     return Assembly(
         root["name"].label(),
-        str(file.resolve()),
+        source,
         parts,
         _read_order(root["order"], parts, scale),
         [_read_actuator(node, scale) for node in _filled(root["actuators"])],
         _read_fingers(root, scale),
         _read_options(root),
         unit,
-        _read_holding(root, scale),
+        holding,
     )
 
 
@@ -169,7 +178,8 @@ def _read_part(node: Node, scale: float, unit: str) -> AssemblyPart:
     source = ""
     if kinds == ["mesh"]:
         source = str(find_file(node["mesh"]))
-        mesh = Mesh.load(source, [scale] * 3)
+        with node["mesh"].blamed():
+            mesh = Mesh.load(source, [scale] * 3)
     elif kinds == ["turned"]:
         mesh = _turned(node["turned"], scale)
     else:

@@ -16,6 +16,7 @@ from .premises import premises
 
 Plan = dict[str, Any]
 _CLOSE = 1e-6  # [m], [rad]
+_RADIUS_SLACK = 1e-9  # [m]; smaller differences of discs are rounding, for planners and the check alike
 
 
 def check_consistency(plan: Plan) -> list[checks.Fault]:
@@ -150,7 +151,7 @@ def _intersections(plan: Plan) -> Found:
             shared = int(np.logical_and.reduce(layers).sum()) if layers else 0
             if not layers or shared != said["cells"]:
                 yield where, f"says {said['cells']} cells, its trays share {shared}"
-            elif (said["radius"] < least - _CLOSE) != (key == "too_small_intersections"):
+            elif (said["radius"] < least - _RADIUS_SLACK) != (key == "too_small_intersections"):
                 yield where, f"a disc of {said['radius']:g} m, the positioning uncertainty is {least:g} m"
 
 

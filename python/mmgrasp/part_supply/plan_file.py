@@ -26,7 +26,7 @@ def read_plan(path: str | os.PathLike[str]) -> dict[str, Any]:
 def check_header(root: Node) -> None:
     """Raises InvalidInput unless format and version are those of a plan that this version reads."""
     if not isinstance(root.raw, dict) or "format" not in root.raw:
-        raise InvalidInput(f"{root.document.source}: is no plan: the key format: mmgrasp-plan is missing")
+        raise InvalidInput(f"{root.place}: is no plan: the key format: mmgrasp-plan is missing")
     root["format"].choice("mmgrasp-plan")
     root.read_version(VERSION, RENAMED)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .._core import InvalidInput, pairwise_weights
+from .._core import pairwise_weights
 from ..documents.reading import Node
 from .structure_section import pressure
 
@@ -43,10 +43,8 @@ def read_preferences(root: Node) -> Preferences:
         if len(rows) != len(OBJECTIVES):
             node["comparison"].fail("must be three rows: " + ", ".join(OBJECTIVES))
         matrix = [row.numbers(len(OBJECTIVES), above=0) for row in rows]
-        try:
+        with node["comparison"].blamed():
             found = pairwise_weights(matrix)
-        except InvalidInput as error:
-            raise InvalidInput(f"{node['comparison'].place}: {node['comparison'].name}: {error}") from None
         options = {f"{key}_weight": float(w) for key, w in zip(OBJECTIVES, found.weights, strict=True)}
         ratio = float(found.consistency_ratio)
         source = "comparison matrix given"

@@ -163,8 +163,15 @@ def load_pipe_problem(
     """
     file = shipped_problem(path)
     root = read_yaml(file).root
+    with root.blamed():
+        return _read_problem(
+            root, str(file.resolve()), {"seed": seed, "threads": threads, "algorithm": algorithm}, progress
+        )
+
+
+def _read_problem(root: Node, source: str, given: dict[str, Any], progress: Progress) -> PipeProblem:
     if not isinstance(root.raw, dict) or "format" not in root.raw:
-        raise InvalidInput(f"{root.document.source}: is no pipe problem: the key format: mmgrasp-pipe is missing")
+        raise InvalidInput(f"{root.place}: is no pipe problem: the key format: mmgrasp-pipe is missing")
     root["format"].choice("mmgrasp-pipe")
     root.read_version(1)
     root.mapping(TOP_KEYS, TOP_OPTIONAL)
@@ -176,12 +183,10 @@ def load_pipe_problem(
         root["robot"].fail("its base cannot go sideways as the pipe's path may ask: base must be fixed or omni")
     _check_holdable(root["structure"], pipe, setup.gripper)
     path_options, search_options = _read_options(root)
-    for key, value in (("seed", seed), ("threads", threads), ("algorithm", algorithm)):
-        if value is not None:
-            search_options[key] = value
+    search_options |= {key: value for key, value in given.items() if value is not None}
     return PipeProblem(
         root["name"].label(),
-        str(file.resolve()),
+        source,
         pipe,
         frame,
         setup.robot,
@@ -205,7 +210,8 @@ def _read_world(root: Node, robot: Robot) -> World:
         name = node["name"].label()
         if name == PIPE or name in world.objects:
             node["name"].fail("is the name of the pipe" if name == PIPE else "is used twice")
-        world.add(name, read_shapes(node, find_file), node["pose"].pose() if "pose" in node else np.eye(4))
+        with node.blamed():
+            world.add(name, read_shapes(node, find_file), node["pose"].pose() if "pose" in node else np.eye(4))
     read_contact_rules(root, robot, list(world.objects), [PIPE]).apply(world)
     return world
 
@@ -246,7 +252,8 @@ def _read_compared(root: Node, pipe: Pipe, gripper: Hand) -> list[Grasp]:
         if length > pipe.lengths[section]:
             node["length"].fail(f"is beyond the end of section {section}, which is {pipe.lengths[section]:g} m long")
         flipped = node["flipped"].boolean() if "flipped" in node else False
-        grasps.append(pipe.grasp(section, length, node["angle"].number(), flipped, gripper=gripper))
+        with node.blamed():
+            grasps.append(pipe.grasp(section, length, node["angle"].number(), flipped, gripper=gripper))
     return grasps
 
 

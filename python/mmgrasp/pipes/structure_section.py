@@ -57,10 +57,8 @@ def read_structure(node: Node, stress_limit: float = 0.0) -> tuple[Pipe, BeamFra
 
 def _made(node: Node, make: Callable[[], _Made]) -> _Made:
     """What the library says of a value, with the place in the file."""
-    try:
+    with node.blamed():
         return make()
-    except InvalidInput as error:
-        raise InvalidInput(f"{node.place}: {node.name}: {error}") from None
 
 
 def _shared(element: Node, structure: Node, key: str) -> Node | None:

@@ -29,6 +29,7 @@ from .shapes import read_shapes
 BASE_LIMITS = "linear_velocity angular_velocity linear_acceleration angular_acceleration workspace wheel_velocity wheel_separation"
 ROBOT_KEYS = "urdf srdf packages xacro_args base base_limits mount frames group tool_link joints home"
 BIN_LINK = "place_bin"
+LONGEST_CROSSING = 600.0  # from end to end of a joint's range [s]
 SLOWEST = 1e-3  # of a base [m/s, rad/s and their rates]: a round that takes days has more samples than memory
 
 
@@ -118,10 +119,8 @@ def _named_profile(own: Node) -> RobotSections | None:
     if "name" not in own:
         return None
     own.mapping("name")
-    try:
+    with own["name"].blamed():
         path = profile_path(own["name"].string())
-    except InvalidInput as error:
-        raise InvalidInput(f"{own['name'].place}: {error}") from None
     return _profile_sections(read_yaml(path).root)
 
 
@@ -207,23 +206,25 @@ def compose(node: Node) -> Robot:
             key: value.number(least=SLOWEST) if key in slow else value.number(above=0) for key, value in section.items()
         }
     base = node["base"].choice("fixed", "diff_drive", "omni") if "base" in node else "fixed"
-    robot = _load(node, base, limits)
+    with (node["base_limits"] if "base_limits" in node else node).blamed():
+        robot = _load(node, base, limits)
     for mount in node["mount"].elements() if "mount" in node else []:
         mount.mapping("urdf parent_link", "srdf packages xacro_args pose prefix")
         other = _load(mount, "fixed", {})
         _link(robot, mount["parent_link"])
         T = mount["pose"].pose() if "pose" in mount else np.eye(4)
         prefix = mount["prefix"].string() if "prefix" in mount else ""
-        robot = robot.mount(other, mount["parent_link"].string(), T, prefix)
+        with mount.blamed():
+            robot = robot.mount(other, mount["parent_link"].string(), T, prefix)
     for frame in node["frames"].elements() if "frames" in node else []:
         frame.mapping("name parent", "pose box cylinder sphere mesh shapes scale")
         _link(robot, frame["parent"])
         if frame["name"].label() in (*robot.links, BIN_LINK):
             frame["name"].fail("the robot has a link of this name already")
         T = frame["pose"].pose() if "pose" in frame else np.eye(4)
-        robot = robot.with_link(
-            frame["name"].string(), frame["parent"].string(), T, read_shapes(frame, find_file, required=False)
-        )
+        shapes = read_shapes(frame, find_file, required=False)
+        with frame.blamed():
+            robot = robot.with_link(frame["name"].string(), frame["parent"].string(), T, shapes)
     return robot
 
 
@@ -271,10 +272,21 @@ def _read_group(robot: Robot, node: Node, tool_link: str) -> JointGroup:
             if key in node:
                 _link(robot, node[key])
         make = {"base_link": node["base_link"].string(), "tip": tool_link}
-    try:
-        return robot.group(**make)
-    except InvalidInput as error:
-        node.fail(str(error))
+    with node.blamed():
+        arm = robot.group(**make)
+    _check_speeds(node, arm)
+    return arm
+
+
+def _check_speeds(node: Node, arm: JointGroup) -> None:
+    """Every joint crosses its range in minutes: motions that take days have more samples than memory."""
+    travel = np.minimum(arm.upper - arm.lower, 2 * np.pi)
+    for name, way, speed in zip(arm.names, travel, arm.velocity_limits, strict=True):
+        if way > LONGEST_CROSSING * speed:
+            node.fail(
+                f"the joint {name} has a velocity of {speed:g} in its URDF: must be at least {way / LONGEST_CROSSING:.3g}, for it to cross "
+                f"its range, or a turn, in {LONGEST_CROSSING:g} s"
+            )
 
 
 def _read_home(node: Node, arm: JointGroup) -> np.ndarray:
@@ -316,14 +328,15 @@ def _read_gripper(node: Node, robot: Robot, tool_link: str) -> Hand:
     if "clearance" in node:
         sizes["clearance"] = node["clearance"].number(least=0)
     axes = _axes(node)
-    hand = Hand(
-        tool_link,
-        approach=axes["approach"],
-        closing=axes["closing"],
-        joints=joints,
-        finger_links=[link.raw for link in node["finger_links"].elements()],
-        **sizes,
-    )
+    with node.blamed():
+        hand = Hand(
+            tool_link,
+            approach=axes["approach"],
+            closing=axes["closing"],
+            joints=joints,
+            finger_links=[link.raw for link in links],
+            **sizes,
+        )
     _check_finger_travel(node["joints"], robot, hand)
     return hand
 
@@ -379,7 +392,8 @@ def _add_bin(robot: Robot, node: Node) -> tuple[Robot, np.ndarray]:
     size = node["size"].numbers(3, above=0)
     parent, T_parent_bin = node["parent"].string(), node["pose"].pose()
     box = LinkShape(Box(size), _core.pose([0, 0, -size[2] / 2]))
-    robot = robot.with_link(BIN_LINK, parent, T_parent_bin, [box])
+    with node.blamed():
+        robot = robot.with_link(BIN_LINK, parent, T_parent_bin, [box])
     T_root_bin = robot.link_poses()[BIN_LINK]
     if T_root_bin[2, 2] < 1 - 1e-9:
         node["pose"].fail("the bin's top face must be level")
@@ -389,7 +403,8 @@ def _add_bin(robot: Robot, node: Node) -> tuple[Robot, np.ndarray]:
 def _read_place_region(node: Node, T_root_bin: np.ndarray) -> PlaceRegion:
     size = node["size"].numbers(3, above=0)
     options = {"drop_height": node["drop_height"].number(least=0)} if "drop_height" in node else {}
-    return PlaceRegion(T_root_bin, size[:2], **options)
+    with node.blamed():
+        return PlaceRegion(T_root_bin, size[:2], **options)
 
 
 def _check_joint_owners(sections: RobotSections, arm: JointGroup) -> None:

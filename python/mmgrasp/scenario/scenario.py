@@ -28,6 +28,7 @@ TOP_OPTIONAL = (
     "arrival_covariance part_types gripper place_region floor obstacles allowed_collisions padding options reach"
 )
 FLOOR = "floor"
+REPLACING = "replacing a damaged reachability database"  # the stage that ReachDatabase.load_or_build reports
 LEAST_SAMPLES = 10_000  # of the database of what the arm reaches
 SHAPE_KEYS = "box cylinder sphere mesh shapes scale"
 
@@ -109,11 +110,19 @@ class Scenario:
     def reach_database(self, progress: Progress = None) -> ReachDatabase:
         """The arm's reachability database, from the cache or built now; without a usable cache it is built each time."""
         options = {"threads": self.options.get("threads", 0)} | self.reach
+        log = logging.getLogger("mmgrasp")
+
+        def hear(stage: str, fraction: float) -> None:
+            if stage == REPLACING:
+                log.warning("the reachability database in %s is damaged: it is built anew", _core.cache_folder())
+            if progress is not None:
+                progress(stage, fraction)
+
         try:
             check_folder(Path(_core.cache_folder()))
-            return ReachDatabase.load_or_build(self.setup.arm, _core.cache_folder(), progress=progress, **options)
+            return ReachDatabase.load_or_build(self.setup.arm, _core.cache_folder(), progress=hear, **options)
         except IoError as error:
-            logging.getLogger("mmgrasp").warning(
+            log.warning(
                 "%s; planning goes on without the cache: set XDG_CACHE_HOME to a folder that can be written", error
             )
             return ReachDatabase.build(self.setup.arm, progress=progress, **options)
@@ -138,6 +147,13 @@ def load_scenario(
     Raises InvalidInput or IoError with one message that names file, line, key, value and rule.
     """
     root = read_yaml(shipped(path)).root
+    with root.blamed():
+        return _read_scenario(root, str(Path(path).resolve()), robot, seed, threads, progress)
+
+
+def _read_scenario(
+    root: Node, source: str, robot: str | None, seed: int | None, threads: int | None, progress: Progress
+) -> Scenario:
     _check_header(root)
     start, goal = np.array(root["start"].numbers(3)), np.array(root["goal"].numbers(3))
     uncertainty = root["positioning_uncertainty"].number(least=0)
@@ -171,7 +187,7 @@ def load_scenario(
         options["threads"] = threads
     scenario = Scenario(
         root["name"].label(),
-        str(Path(path).resolve()),
+        source,
         setup,
         obstacles,
         trays,
@@ -191,7 +207,7 @@ def load_scenario(
 
 def _check_header(root: Node) -> None:
     if not isinstance(root.raw, dict) or "format" not in root.raw:
-        raise InvalidInput(f"{root.document.source}: is no scenario: the key format: mmgrasp-scenario is missing")
+        raise InvalidInput(f"{root.place}: is no scenario: the key format: mmgrasp-scenario is missing")
     root["format"].choice("mmgrasp-scenario")
     root.read_version(3, RENAMED)
     root.mapping(TOP_KEYS, TOP_OPTIONAL)
@@ -253,10 +269,11 @@ def _read_floor(root: Node, obstacles: list[Obstacle]) -> float | None:
     if "floor" in root and root["floor"].raw == "none":
         return None
     height = root["floor"].number() if "floor" in root else 0.0
-    if FLOOR in [o.name for o in obstacles]:
-        raise InvalidInput(
-            f"{root.document.source}: the name {FLOOR!r} is that of the ground; give the obstacle another one, or say floor: none"
-        )
+    for node, obstacle in zip(root["obstacles"].elements() if "obstacles" in root else [], obstacles, strict=False):
+        if obstacle.name == FLOOR:
+            node["name"].fail(
+                f"the name {FLOOR!r} is that of the ground; give the obstacle another one, or say floor: none"
+            )
     return height
 
 
@@ -272,12 +289,15 @@ def _read_trays(root: Node, types: dict[str, PartType], setup: RobotSetup, scans
 
 
 def _check_names(root: Node, obstacles: list[Obstacle], trays: list[TraySetup]) -> None:
+    own = [node["name"] for node in root["obstacles"].elements()] if "obstacles" in root else []
+    named = [(node.raw, node) for node in own]
+    for node, tray in zip(root["trays"].elements(), trays, strict=True):
+        named += [(name, node["name"]) for name in (f"tray {tray.tray.name}", *(p.name for p in tray.tray.parts))]
+    scanned = [(o.name, root["trays"]) for o in obstacles[len(own) + len(trays) :]]
     seen: set[str] = set()
-    for name in [o.name for o in obstacles] + [p.name for t in trays for p in t.tray.parts]:
+    for name, node in named + scanned:
         if name in seen:
-            raise InvalidInput(
-                f"{root.document.source}: the name {name!r} is used twice (obstacles, trays and parts share names)"
-            )
+            node.fail(f"the name {name!r} is used twice (obstacles, trays and parts share names)")
         seen.add(name)
 
 

@@ -158,7 +158,7 @@ def _obstructions(plan: dict[str, Any]) -> str:
             where += f", part {item['part']}"
         advice = ""
         if item["largest_uncertainty"] >= 0 and item["stage"] == "robustness":
-            advice = f" The largest positioning uncertainty that works is {item['largest_uncertainty']:.3f} m."
+            advice = f" The largest positioning uncertainty that works is {item['largest_uncertainty']:.7g} m."
         if item["reach_deficit"] > 0:
             advice += f" The reach falls short by {item['reach_deficit']:.3f} m."
         items.append(f'<div class="bad"><b>{escape(where)}</b>: {escape(item["message"])}{escape(advice)}</div>')
@@ -270,7 +270,7 @@ def _alternatives(plan: dict[str, Any]) -> str:
             verdict = f"would not lead to fewer than {plan['lower_bound']} stops"
         rows.append((item, verdict))
     for item in plan["too_small_intersections"]:
-        rows.append((item, f"its disc of {item['radius']:.3f} m is smaller than the uncertainty of {bound:.3f} m"))
+        rows.append((item, f"its disc of {item['radius']:.7g} m is smaller than the uncertainty of {bound:.7g} m"))
     rows.sort(key=lambda r: (-len(r[0]["trays"]), -r[0]["radius"]))
     shown = [
         [" ".join(_tray(plan, t) for t in i["trays"]), f"{i['radius']:.3f}", str(i["cells"]), verdict]

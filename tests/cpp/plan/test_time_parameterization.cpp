@@ -316,6 +316,16 @@ TEST(TimeParameterization, RefusesMoreSamplesThanMemoryHolds) {
   } catch (const InvalidInput& error) {
     EXPECT_NE(std::string(error.what()).find("sample_period = 1e-12"), std::string::npos) << error.what();
   }
+  // The joint that is to blame is named.
+  try {
+    time_parameterize(path, vec({1, 1e-9}), vec({2, 2}));
+    FAIL();
+  } catch (const InvalidInput& error) {
+    EXPECT_NE(std::string(error.what()).find("at most 1e7 samples"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("for joint 1, which moves by 2 with velocity_limits[1] = 1e-09"),
+              std::string::npos)
+        << error.what();
+  }
 }
 
 /// A bent path of a planar arm past a small ball that only a wide blend of its corner touches.

@@ -3,6 +3,8 @@
 #include <thread>
 
 #include "mmgrasp/core/random.hpp"
+#include "mmgrasp/reach/reach_arrays.hpp"
+#include "mmgrasp/reach/reach_solve.hpp"
 #include "support/reach_folder.hpp"
 
 namespace mmgrasp {
@@ -118,8 +120,59 @@ TEST_F(ReachFile, NoFlippedBitGoesUnnoticed) {
         for (std::int64_t i = 0; i < again.size(); ++i) again.configuration(i);
       });
       expect_io_error(name, "corrupt", [&] { again.save(path("copy.reach")); });
+      expect_io_error(name, "corrupt", [&] { checked_reach_arrays(again); });
     }
   }
+}
+
+/// What was asked of a database, and what it answered.
+struct Asked {
+  int same = 0, refused = 0, other = 0;
+
+  template <class Answer>
+  void ask(const Answer& answer, const ReachDatabase& sound, const ReachDatabase& damaged) {
+    const auto expected = answer(sound);
+    try {
+      ++(answer(damaged) == expected ? same : other);
+    } catch (const IoError& error) {
+      EXPECT_NE(std::string(error.what()).find("corrupt"), std::string::npos) << error.what();
+      ++refused;
+    }
+  }
+};
+
+/// A database whose configurations were changed loads as quickly as any, and every question that meets them refuses:
+/// no answer is another one.
+TEST_F(ReachFile, ChangedConfigurationsNeverAnswer) {
+  const JointGroup arm = test::seven_joints_to("2.4");
+  ReachDatabase::build(arm, small()).save(path("g.reach"));
+  const auto sound = ReachDatabase::load(path("g.reach"));
+  const auto bytes = test::read_folder(path("g.reach"));
+  Rng rng(5);
+  Asked asked;
+  for (int trial = 0; trial < 12; ++trial) {
+    auto flipped = bytes;
+    std::string& configurations = flipped["configurations.npy"];
+    configurations[128 + rng.index(configurations.size() - 128)] ^= static_cast<char>(1 << rng.index(8));
+    test::write_folder(path("h.reach"), flipped);
+    for (std::int64_t i = trial; i < sound.size(); i += sound.size() / 12) {
+      const auto damaged = ReachDatabase::load(path("h.reach"));  // anew: what refused once is not asked again
+      const Pose T = sound.tool_pose(i);
+      asked.ask([&](const ReachDatabase& d) { return d.configuration(i); }, sound, damaged);
+      asked.ask([&](const ReachDatabase& d) { return d.tool_pose(i).matrix(); }, sound, damaged);
+      asked.ask([&](const ReachDatabase& d) { return d.cell(T); }, sound, damaged);
+      asked.ask(
+          [&](const ReachDatabase& d) {
+            Eigen::MatrixXd out;
+            return Eigen::MatrixXd(out.leftCols(d.nearest(T, 6, out)));
+          },
+          sound, damaged);
+      asked.ask([&](const ReachDatabase& d) { return solve_reach(d, arm, T); }, sound, damaged);
+    }
+  }
+  EXPECT_EQ(asked.other, 0);
+  EXPECT_GT(asked.refused, 100);
+  EXPECT_GT(asked.same, 100);
 }
 
 /// With a right checksum again: an edit that was meant, not an accident.
@@ -344,9 +397,22 @@ TEST_F(ReachFile, CacheIsUsedWhenSoundAndRebuiltWhenNot) {
   for (const auto& [name, bytes] : sound) {
     auto cut = sound;
     cut[name] = bytes.substr(0, bytes.size() / 2);
-    test::write_folder(file, cut);
-    EXPECT_EQ(ReachDatabase::load_or_build(arm, options, cache).size(), first.size());
-    EXPECT_TRUE(test::read_folder(file) == sound) << name;
+    auto flipped = sound;
+    flipped[name][bytes.size() - 3] ^= 1;
+    for (const auto& damaged : {cut, flipped}) {
+      test::write_folder(file, damaged);
+      bool told = false;
+      Monitor listening;
+      listening.progress = [&](const std::string& stage, double) {
+        told = told || stage == "replacing a damaged reachability database";
+      };
+      EXPECT_EQ(ReachDatabase::load_or_build(arm, options, cache, listening).size(), first.size());
+      EXPECT_TRUE(told) << name;
+      EXPECT_TRUE(test::read_folder(file) == sound) << name;
+      told = false;
+      ReachDatabase::load_or_build(arm, options, cache, listening);
+      EXPECT_FALSE(told) << name;
+    }
   }
   // So is a cache in the one-file format of earlier versions.
   fs::remove_all(file);

@@ -87,6 +87,42 @@ TEST(MaximalIntersections, RandomRegionsAgainstEverySubset) {
   EXPECT_GT(large, 60);  // the instances are worth the name
 }
 
+/// Asked for the very radius of some disc, or for one a hair beside it, both searches say the same. Half of the regions
+/// are mirror images of the others, whose discs differ by roundings alone.
+TEST(MaximalIntersections, RadiiOfDiscsThatJustFit) {
+  int asked = 0;
+  for (int instance = 0; instance < 3; ++instance) {
+    Rng rng(6, static_cast<std::uint64_t>(instance));
+    const BaseGrid grid = make_grid(30, 24, 0.05);
+    std::vector<BaseRegion> regions;
+    for (int i = 0; i < 3; ++i) {
+      const Eigen::Vector2d centre(rng.uniform(0.5, 1.0), rng.uniform(0.4, 0.8));
+      regions.push_back(
+          region_at(grid, centre, {rng.uniform(0.15, 0.45), rng.uniform(0.15, 0.45)}, rng.uniform() < 0.7));
+      BaseRegion mirrored = regions.back();
+      for (int iy = 0; iy < grid.ny; ++iy) {
+        for (int ix = 0; ix < grid.nx; ++ix)
+          mirrored.cells[grid.index(0, grid.nx - 1 - ix, iy)] = regions.back().cells[grid.index(0, ix, iy)];
+      }
+      regions.push_back(mirrored);
+    }
+    for (const Intersection& some : robust_intersections(grid, regions, 0.04).robust) {
+      for (const double beside : {0.0, 1e-8, -1e-8, 3e-7}) {
+        const double radius = some.radius + beside;
+        const Intersections found = maximal_intersections(grid, regions, radius);
+        const Intersections all = robust_intersections(grid, regions, radius);
+        ASSERT_TRUE(found.complete);
+        ASSERT_EQ(sets_of(found), maximal_of(all))
+            << "instance " << instance << ", radius " << radius << ", " << beside;
+        const auto sets = sets_of(all);
+        EXPECT_EQ(std::count(sets.begin(), sets.end(), numbers(some.trays)), beside > 0 ? 0 : 1);
+        ++asked;
+      }
+    }
+  }
+  EXPECT_GT(asked, 60);
+}
+
 /// Discs whose diameter is a whole number of cells: places shrink to lines and points, which count.
 TEST(MaximalIntersections, PlacesThatAreLinesAndPoints) {
   const BaseGrid grid = make_grid(40, 20, 0.05);

@@ -85,6 +85,44 @@ TEST(LeastStops, DiscsOfExactlyTheSizeAskedCount) {
   EXPECT_TRUE(stop_codes(more).count("region-too-small"));
 }
 
+/// Whoever asks for just the room that there is gets stops, and the check finds as many.
+TEST(LeastStops, RadiiOfDiscsThatJustFit) {
+  int asked = 0;
+  for (int instance = 0; instance < 10; ++instance) {
+    mmgrasp::Rng rng(8, static_cast<std::uint64_t>(instance));
+    mmgrasp::test::Layout layout;
+    layout.grid.origin = Eigen::Vector2d(rng.uniform(-3, 3), rng.uniform(-3, 3));
+    layout.grid.resolution = rng.uniform(0.02, 0.1);
+    layout.grid.nx = 28;
+    layout.grid.ny = 20;
+    layout.grid.headings = {0.0};
+    for (int tray = 0; tray < 4; ++tray) {
+      mmgrasp::BaseRegion region;
+      region.tray = "tray_" + std::to_string(tray);
+      region.cells.assign(layout.grid.size(), 0);
+      const double x = rng.uniform(8, 20), y = rng.uniform(7, 13), a = rng.uniform(3, 8), b = rng.uniform(3, 7);
+      for (int iy = 0; iy < layout.grid.ny; ++iy) {
+        for (int ix = 0; ix < layout.grid.nx; ++ix)
+          region.cells[layout.grid.index(0, ix, iy)] = std::hypot((ix + 0.5 - x) / a, (iy + 0.5 - y) / b) <= 1;
+      }
+      layout.regions.push_back(region);
+    }
+    for (const mmgrasp::Intersection& some :
+         mmgrasp::robust_intersections(layout.grid, layout.regions, 1e-3).robust) {
+      const mmgrasp::StopSet stops = planned(layout, some.radius);
+      if (stops.outcome == mmgrasp::Outcome::infeasible) continue;  // some other tray has no room for it
+      ASSERT_EQ(stops.outcome, mmgrasp::Outcome::solved);
+      PlanToCheck plan = bare_plan(layout, some.radius);
+      add_stops(stops, plan);
+      const PlanCheckResult result = check_plan(plan, few_samples());
+      EXPECT_EQ(stop_codes(result), Codes{}) << "instance " << instance << ", radius " << some.radius;
+      EXPECT_EQ(result.minimal_stops, static_cast<int>(stops.stops.size()));
+      ++asked;
+    }
+  }
+  EXPECT_GT(asked, 30);
+}
+
 TEST(LeastStops, DiscsBetweenTwoCornersCountOnBothSides) {
   // A corridor as wide as the disc; A keeps the corner (3, 2) free, B a corner at x = 6. From (4.5, 4) both (3, 2) and
   // (6, 6) are 2.5 cells away, and no other place in the corridor is as far from both.

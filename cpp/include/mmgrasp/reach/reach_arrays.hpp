@@ -11,7 +11,7 @@ namespace mmgrasp {
 
 /// The arrays of a database as they lie in memory or in its files (docs/methods/reach.md says what they mean); valid
 /// as long as the database or a copy of it lives. Configurations read this way are not compared with their checksums:
-/// call verify() first where that matters.
+/// take checked_reach_arrays() for these.
 struct MMGRASP_EXPORT ReachArrays {
   std::int64_t positions = 0, cells = 0, size = 0;
   int joints = 0;
@@ -26,5 +26,8 @@ struct MMGRASP_EXPORT ReachArrays {
   std::string robot, tip;
 };
 MMGRASP_EXPORT ReachArrays reach_arrays(const ReachDatabase& database);
+/// The same, once every configuration has been compared with its checksum, which is done the first time. Throws IoError
+/// naming file and place where they differ.
+MMGRASP_EXPORT ReachArrays checked_reach_arrays(const ReachDatabase& database);
 
 }  // namespace mmgrasp

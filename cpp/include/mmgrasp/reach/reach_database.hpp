@@ -71,8 +71,8 @@ class MMGRASP_EXPORT ReachDatabase {
   /// Key under which a database of this arm with these options is cached: a hash of the robot (shapes, limits, disabled
   /// pairs), the group's joints and tip, the values at which the other joints are held, and every option but threads.
   static std::string cache_key(const JointGroup& arm, const ReachOptions& options);
-  /// Loads `cache_dir`/<key>.reach when it is there and sound, else builds and saves it (not when stopped; large ones
-  /// with build_to). The folder is made when missing; throws IoError before building when that is impossible.
+  /// Loads `cache_dir`/<key>.reach when it is there and sound, else builds and saves it (not when stopped; in the place
+  /// of a damaged one, as its stage says). The folder is made when missing; throws IoError first when it cannot be.
   static ReachDatabase load_or_build(const JointGroup& arm, const ReachOptions& options, const std::string& cache_dir,
                                      const Monitor& monitor = {});
 

@@ -17,7 +17,7 @@ struct MMGRASP_EXPORT InscribedCircle {
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();  ///< [m]
 };
 
-/// The largest disc in one layer: exact on the cells' squares to 1e-6 m in radius (branch and bound on the distance to
+/// The largest disc in one layer: exact on the cells' squares to 1e-9 m in radius (branch and bound on the distance to
 /// the complement).
 MMGRASP_EXPORT InscribedCircle inscribed_circle(const BaseGrid& grid, const CellMask& cells, int heading);
 
@@ -51,9 +51,9 @@ MMGRASP_EXPORT Intersections robust_intersections(const BaseGrid& grid, const st
 /// robust_intersections() would list every subset.
 ///
 /// The search is on the floor, not on the sets: boxes of base positions are split until the trays that each could serve
-/// at most are known. No disc smaller than `min_radius` by more than 1e-9 m counts; sets whose disc is within 1e-6 m of
-/// it may be judged either way. `complete` is false when `max_boxes` a layer or the monitor ended the search.
-/// sets_tried counts the sets found, `too_small` stays empty.
+/// at most are known. A disc counts when it is smaller than `min_radius` by no more than 1e-9 m, as everywhere.
+/// `complete` is false when `max_boxes` a layer or the monitor ended the search. sets_tried counts the sets found,
+/// `too_small` stays empty.
 MMGRASP_EXPORT Intersections maximal_intersections(const BaseGrid& grid, const std::vector<BaseRegion>& regions,
                                                    double min_radius, std::size_t max_boxes = 50'000'000,
                                                    const Monitor& monitor = {});

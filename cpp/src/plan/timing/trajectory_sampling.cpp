@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <utility>
 #include <vector>
 
@@ -14,6 +15,8 @@ namespace {
 constexpr double kJump = 0.004;          // Acceleration jumps above this part of a limit get a sample of their own.
 constexpr double kSmallestGap = 1e-5;    // Least time between samples at jumps [s].
 constexpr double kSmallestSplit = 2e-4;  // Shorter intervals are not halved [s].
+// Part of a limit by which a sample's acceleration may differ from those of the cubics before and after it.
+constexpr double kCubicFit = 5e-4;
 // Part of a limit by which the mean acceleration between two samples may lie beyond the accelerations at both.
 constexpr double kMaxMeanBeyondEnds = 0.5;
 
@@ -40,8 +43,7 @@ class Sampler {
       : timing_(timing), velocity_limits_(velocity_limits), acceleration_limits_(acceleration_limits) {}
 
   JointTrajectory run(double period) {
-    require(timing_.duration() / period <= kMaxSamples, "sample_period", period,
-            "must leave at most 1e7 samples: the motion takes " + std::to_string(timing_.duration()) + " s");
+    if (timing_.duration() / period > kMaxSamples) refuse(period);
     samples_.push_back({0, timing_.at(0)});
     for (double end : break_times()) {
       const double begin = samples_.back().time;
@@ -52,6 +54,32 @@ class Sampler {
   }
 
  private:
+  [[noreturn]] void refuse(double period) const {
+    const auto [joint, way] = slowest_joint();
+    std::ostringstream message;
+    message << "sample_period = " << period << ": must leave at most 1e7 samples: the motion takes "
+            << timing_.duration() << " s, mostly for joint " << joint << ", which moves by " << way
+            << " with velocity_limits[" << joint << "] = " << velocity_limits_[joint] << " and acceleration_limits["
+            << joint << "] = " << acceleration_limits_[joint];
+    throw InvalidInput(message.str());
+  }
+
+  /// The joint whose way takes the longest at its own limits, and how far it moves.
+  std::pair<Eigen::Index, double> slowest_joint() const {
+    constexpr int kPieces = 100;
+    Eigen::VectorXd way = Eigen::VectorXd::Zero(velocity_limits_.size()), last = timing_.at(0).position;
+    for (int i = 1; i <= kPieces; ++i) {
+      const Eigen::VectorXd next = timing_.at(timing_.duration() * i / kPieces).position;
+      way += (next - last).cwiseAbs();
+      last = next;
+    }
+    Eigen::Index slowest = 0;
+    const Eigen::VectorXd times =
+        way.cwiseQuotient(velocity_limits_).cwiseMax(2 * way.cwiseQuotient(acceleration_limits_).cwiseSqrt());
+    times.maxCoeff(&slowest);
+    return {slowest, way[slowest]};
+  }
+
   /// Jump times and the end, none closer together than cubics can resolve. Of jumps that are, the last one stays: a
   /// sample's acceleration is that of what follows, and what lies between the jumps (a straight of a micrometre between
   /// two arcs) would stand for a whole interval.
@@ -78,6 +106,24 @@ class Sampler {
     return false;
   }
 
+  /// Where the acceleration bends within an interval, the cubic that is executed begins with another one than the
+  /// sample says. Where it has jumped at the sample, or jumps in the interval, the cubic on one side still says what
+  /// the sample does.
+  bool differs_from_cubics(const Sample& a, const Sample& b) const {
+    const Sample* before = samples_.size() > 1 ? &samples_[samples_.size() - 2] : nullptr;
+    for (Eigen::Index j = 0; j < acceleration_limits_.size(); ++j) {
+      const double said = a.state.acceleration[j], most = kCubicFit * acceleration_limits_[j];
+      if (std::abs(said - ends(a, b, j).first) <= most) continue;
+      if (before == nullptr || std::abs(said - ends(*before, a, j).second) > most) return true;
+    }
+    return false;
+  }
+
+  static std::pair<double, double> ends(const Sample& a, const Sample& b, Eigen::Index j) {
+    const double h = b.time - a.time, mean = (b.state.position[j] - a.state.position[j]) / h;
+    return cubic_end_accelerations(mean, a.state.velocity[j], b.state.velocity[j], h);
+  }
+
   /// Appends the sample at `time`, after those that keep the cubics in between within limits.
   void append(double time) { append({time, timing_.at(time)}); }
   void append(Sample sample) {
@@ -86,7 +132,8 @@ class Sampler {
     const double interval = sample.time - previous.time;
     const Load load = hermite_load(previous, sample);
     const bool beyond = std::max(load.velocity, load.acceleration) > 1;
-    if ((beyond || hides_acceleration(previous, sample)) && interval > kSmallestSplit) {
+    const bool unlike = hides_acceleration(previous, sample) || differs_from_cubics(previous, sample);
+    if ((beyond || unlike) && interval > kSmallestSplit) {
       append(previous.time + 0.5 * interval);
       append(std::move(sample));
       return;

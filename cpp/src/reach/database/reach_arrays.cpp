@@ -24,4 +24,10 @@ ReachArrays reach_arrays(const ReachDatabase& database) {
   return out;
 }
 
+ReachArrays checked_reach_arrays(const ReachDatabase& database) {
+  const ReachDatabase::Data& data = database.data();
+  if (data.size() > 0) data.stored(0, data.size());
+  return reach_arrays(database);
+}
+
 }  // namespace mmgrasp

@@ -37,6 +37,7 @@ ReachDatabase ReachDatabase::load_or_build(const JointGroup& arm, const ReachOpt
   if (!std::filesystem::is_directory(cache_dir))
     throw IoError(cache_dir + ": cannot make the cache folder" + (error ? ": " + error.message() : ""));
   const std::string path = (std::filesystem::path(cache_dir) / (key + ".reach")).string();
+  Monitor building = monitor;
   if (std::filesystem::exists(path)) {
     try {
       ReachDatabase found = load(path);
@@ -45,13 +46,16 @@ ReachDatabase ReachDatabase::load_or_build(const JointGroup& arm, const ReachOpt
         return found;
       }
     } catch (const IoError&) {  // a damaged cache is worth nothing, and costs nothing: build again and replace it
+      building.progress = [&monitor](const std::string&, double fraction) {
+        monitor.report("replacing a damaged reachability database", fraction);
+      };
     }
     detail::move_away(path);
   }
   // Only what takes long is worth leaving parts of when interrupted.
   constexpr std::int64_t kWorthParts = 16'000'000;
-  if (options.samples >= kWorthParts) return build_to(path, arm, options, monitor);
-  ReachDatabase built = build(arm, options, monitor);
+  if (options.samples >= kWorthParts) return build_to(path, arm, options, building);
+  ReachDatabase built = build(arm, options, building);
   if (!monitor.stopped()) built.save(path);
   return built;
 }

@@ -320,7 +320,7 @@ InscribedCircle inscribed_circle(const BaseGrid& grid, const CellMask& cells, in
       part[static_cast<std::size_t>(iy) * nx + ix] = cells[grid.index(heading, x0 + ix, y0 + iy)] ? 1 : 0;
     }
   }
-  InscribedCircle circle = detail::inscribed_circle_in_cells(nx, ny, part, std::min(2e-7 / grid.resolution, 1e-3));
+  InscribedCircle circle = detail::inscribed_circle_in_cells(nx, ny, part, detail::kCircleError / grid.resolution);
   circle.radius *= grid.resolution;
   circle.centre = grid.origin + (circle.centre + Eigen::Vector2d(x0, y0)) * grid.resolution;
   return circle;

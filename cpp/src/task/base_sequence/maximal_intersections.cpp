@@ -2,9 +2,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/task/base_sequence.hpp"
+#include "task/base_sequence/inscribed_circle.hpp"
 #include "task/base_sequence/region_patches.hpp"
 
 // Lengths in here are in cells: cell (ix, iy) is the square [ix, ix + 1] x [iy, iy + 1].
@@ -12,8 +14,8 @@ namespace mmgrasp {
 namespace detail {
 namespace {
 
-constexpr double kRadiusSlack = 1e-9;  // [m]: a disc of exactly the least radius counts.
-constexpr double kSmallestBox = 1e-6;  // [m]: smaller boxes are not split; only the points tried in them count.
+// [m]: smaller boxes are not split. What such a one may serve at most is decided by its largest shared disc.
+constexpr double kSmallestBox = 1e-6;
 
 struct Window {
   double x0, x1, y0, y1;
@@ -129,6 +131,17 @@ class LayerSearch {
     return true;
   }
 
+  /// Sets that the smallest boxes left open, by the largest disc that they share.
+  void settle(const RegionPatches& patches, int heading, double least) {
+    const BaseGrid& grid = patches.grid();
+    for (const std::vector<TrayId>& set : open_) {
+      if (found_.covers(set)) continue;
+      const Intersection place = patches.shared(set, heading);
+      const Eigen::Vector2d at = (place.centre - grid.origin) / grid.resolution;
+      if (place.radius >= least) found_.add(set, {at.x(), at.y()});
+    }
+  }
+
   const MaximalSets& found() const { return found_; }
 
  private:
@@ -218,7 +231,10 @@ class LayerSearch {
       add_at(p, locals, proven);
     }
     if (found_.covers(at_most)) return;
-    if (std::max(window.x1 - window.x0, window.y1 - window.y0) < smallest_) return;
+    if (std::max(window.x1 - window.x0, window.y1 - window.y0) < smallest_) {
+      open_.insert(at_most);
+      return;
+    }
     Window first = window, second = window;
     split(window, locals, first, second);
     search(first, locals, proven);
@@ -260,6 +276,7 @@ class LayerSearch {
   std::size_t max_boxes_, boxes_ = 0;
   const Monitor& monitor_;
   MaximalSets found_;
+  std::set<std::vector<TrayId>> open_;  // what the smallest boxes may serve at most
 };
 
 }  // namespace
@@ -271,6 +288,7 @@ Intersections maximal_intersections(const RegionPatches& patches, double min_rad
   for (int heading = 0; heading < patches.headings(); ++heading) {
     LayerSearch search(patches.layer(heading), min_radius / resolution, resolution, max_boxes, monitor);
     result.complete = search.run() && result.complete;
+    search.settle(patches, heading, min_radius - kRadiusSlack);
     for (const Found& found : search.found().sorted()) {
       ++result.sets_tried;
       Intersection place = patches.shared(found.trays, heading);

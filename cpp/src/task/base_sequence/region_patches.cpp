@@ -8,8 +8,6 @@
 namespace mmgrasp::detail {
 namespace {
 
-constexpr double kCircleError = 2e-7;  // [m]
-
 Patch make_patch(const BaseGrid& grid, const CellMask& mask, int heading, TrayId tray) {
   Patch patch;
   patch.tray = tray;
@@ -91,7 +89,7 @@ Intersection RegionPatches::shared(const std::vector<TrayId>& trays, int heading
     }
   }
   const InscribedCircle circle =
-      inscribed_circle_in_cells(x1 - x0, y1 - y0, cells, std::min(kCircleError / grid_.resolution, 1e-3));
+      inscribed_circle_in_cells(x1 - x0, y1 - y0, cells, kCircleError / grid_.resolution);
   place.radius = circle.radius * grid_.resolution;
   place.centre = grid_.origin + (circle.centre + Eigen::Vector2d(x0, y0)) * grid_.resolution;
   return place;

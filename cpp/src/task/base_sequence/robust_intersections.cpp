@@ -6,11 +6,11 @@
 
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/task/base_sequence.hpp"
+#include "task/base_sequence/inscribed_circle.hpp"
 
 namespace mmgrasp {
 namespace {
 
-constexpr double kRadiusSlack = 1e-9;      // [m]: a disc of exactly the least radius counts.
 constexpr std::size_t kMaxTooSmall = 200;  // Most of Intersections::too_small that are kept.
 
 using Words = std::vector<std::uint64_t>;
@@ -96,7 +96,7 @@ class LayerGrowth {
     const InscribedCircle circle = circle_of(candidate.cells);
     some.centre = circle.centre;
     some.radius = circle.radius;
-    if (some.radius >= min_radius_ - kRadiusSlack) {
+    if (some.radius >= min_radius_ - detail::kRadiusSlack) {
       out_.robust.push_back(std::move(some));
       return true;
     }

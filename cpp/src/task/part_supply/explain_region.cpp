@@ -21,6 +21,25 @@ std::string metres(double value) {
   return out.str();
 }
 
+constexpr double kAdviceStep = 1e-5;  // Advised lengths are whole steps [m], so that texts and fields tell the same.
+constexpr double kDiscMargin = 2e-6;  // An advised disc is smaller than the largest one by this much at least [m].
+
+/// A multiple of kAdviceStep with all its digits.
+std::string advised_metres(double value) {
+  std::ostringstream out;
+  out.precision(9);
+  out << value << " m";
+  return out.str();
+}
+
+/// Rounded towards the side on which it works.
+double advised_below(double value) {
+  return std::max(0.0, std::floor(value / kAdviceStep) / std::round(1 / kAdviceStep));
+}
+double advised_above(double value) {
+  return std::ceil(value / kAdviceStep) / std::round(1 / kAdviceStep);
+}
+
 /// The target part that blocks: no feasible base pose, else the smallest region of its own.
 int blocking_part(const BaseRegion& region) {
   int worst = 0;
@@ -130,7 +149,7 @@ double needed_opening(const Part& part, const Hand& gripper) {
     const double extent = bounds.sizes()[axis];
     if (!upright && extent > gripper.max_opening) narrowest = std::min(narrowest, extent);
   }
-  return std::isfinite(narrowest) ? narrowest + 2 * gripper.clearance : 0;
+  return std::isfinite(narrowest) ? advised_above(narrowest + 2 * gripper.clearance) : 0;
 }
 
 Obstruction without_grasps(Obstruction obstruction, const Part& part, const Hand& gripper) {
@@ -144,7 +163,7 @@ Obstruction without_grasps(Obstruction obstruction, const Part& part, const Hand
   obstruction.message += ": all " + std::to_string(part.grasps_too_wide) +
                          " candidates are wider than the gripper opens (" + metres(gripper.max_opening) + ")";
   if (obstruction.needed_opening > 0)
-    obstruction.message += ": take a gripper that opens to " + metres(obstruction.needed_opening);
+    obstruction.message += ": take a gripper that opens to " + advised_metres(obstruction.needed_opening);
   return obstruction;
 }
 
@@ -185,13 +204,14 @@ Obstruction explain_region(const PartSupplyProblem& problem, const ReachDatabase
   const double radius = largest_radius(grid, region);
   if (radius > 0) {
     obstruction.stage = "robustness";
-    obstruction.largest_uncertainty = radius;
+    obstruction.largest_uncertainty = advised_below(radius - kDiscMargin);
     obstruction.part = region.explanations[blocking_part(region)].part;
     obstruction.message =
         "tray '" + region.tray +
-        "': the largest disc of base poses from which every part can be grasped has a radius of " + metres(radius) +
-        ", positioning_uncertainty is " + metres(problem.options.positioning_uncertainty) +
-        ": lower it to that radius or position the base better (the part with the smallest region is '" +
+        "': the largest disc of base poses from which every part can be grasped has a radius of " +
+        advised_metres(obstruction.largest_uncertainty) + ", positioning_uncertainty is " +
+        six_digits(problem.options.positioning_uncertainty) +
+        " m: lower it to that radius or position the base better (the part with the smallest region is '" +
         obstruction.part + "')";
     return obstruction;
   }

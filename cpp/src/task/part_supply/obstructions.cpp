@@ -34,7 +34,7 @@ Obstruction explain_robustness(const RobustnessResult& check, const std::vector<
   message << "only " << check.stops[worst].good << " of " << check.stops[worst].samples
           << " base poses drawn in the uncertainty disc of the stop at " << pose_text(stops[worst].pose)
           << " reach every part (worst: '" << obstruction.part
-          << "'): use a finer grid.resolution or a smaller positioning_uncertainty";
+          << "'): use a finer grid_resolution or a smaller positioning_uncertainty";
   obstruction.message = message.str();
   return obstruction;
 }

@@ -1,20 +1,18 @@
 #include "verify/motion/base_course.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 #include <vector>
+
+#include "verify/motion/stored_accelerations.hpp"
 
 namespace mmgrasp::verify::detail {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kSlack = 0.01;  // Share by which limits may be exceeded.
-// Shares of the limit by which stored accelerations may be off the velocities': those of a turning platform's x and y
-// change between samples, the others do not.
-constexpr double kTurningFitSlack = 0.05, kFitSlack = 0.005;
+constexpr double kSlack = 0.01;      // Share by which limits may be exceeded.
 constexpr double kOffCourse = 1e-3;  // Largest error after the whole motion [m], [rad].
 constexpr double kSideways = 1e-3;   // [m/s]
 
@@ -86,37 +84,13 @@ void check_limits(const PlanToCheck& plan, const CheckedMotion& motion, const st
   }
 }
 
-/// Stored accelerations of base and arm lie between those by which the velocities change before and after, and these
-/// between the stored ones.
+/// Stored accelerations of the base are those of its velocities.
 void check_accelerations(const PlanToCheck& plan, const CheckedMotion& motion, const std::string& where,
                          Faults& faults) {
   const BaseLimits& base = plan.robot.base_limits;
   // Along x and y a turning platform's acceleration has a share of speed times turning rate.
   const double most = base.linear_acceleration + base.linear_velocity * base.angular_velocity;
-  std::vector<double> limits{most, most, base.angular_acceleration};
-  limits.insert(limits.end(), plan.acceleration_limits.begin(), plan.acceleration_limits.end());
-  const std::size_t last = motion.times.size() - 1;
-  const auto mean = [&](std::size_t i, Eigen::Index j) {
-    return (motion.velocities[i + 1][j] - motion.velocities[i][j]) / (motion.times[i + 1] - motion.times[i]);
-  };
-  const auto between = [](double value, double a, double b, double slack) {
-    return value >= std::min(a, b) - slack && value <= std::max(a, b) + slack;  // false for NaN
-  };
-  for (std::size_t i = 0; i <= last; ++i) {
-    for (Eigen::Index j = 0; j < motion.accelerations[i].size(); ++j) {
-      const std::size_t column = j;
-      const double before = mean(i > 0 ? i - 1 : 0, j), after = mean(std::min(i, last - 1), j);
-      const double said = motion.accelerations[i][j], next = motion.accelerations[std::min(i + 1, last)][j];
-      const double slack = (column < 2 ? kTurningFitSlack : kFitSlack) * limits[column];
-      if (between(said, before, after, slack) && (i == last || between(after, said, next, slack))) continue;
-      static const std::array<std::string, 3> kBase{"x", "y", "theta"};
-      faults.push_back({"acceleration", where + ", t = " + text(motion.times[i]) + " s",
-                        "the stored acceleration of '" + (column < 3 ? kBase[column] : plan.arm_joints[column - 3]) +
-                            "' is " + text(said) + ", its velocity changes by " + text(before) + " before and " +
-                            text(after) + " after"});
-      return;
-    }
-  }
+  check_accelerations_fit(motion, {most, most, base.angular_acceleration}, {"x", "y", "theta"}, where, faults);
 }
 
 }  // namespace

@@ -4,17 +4,13 @@
 #include <cmath>
 
 #include "verify/motion/hermite.hpp"
+#include "verify/motion/stored_accelerations.hpp"
 
 namespace mmgrasp::verify::detail {
 namespace {
 
 constexpr double kPositionSlack = 1e-5;  // [rad] or [m]; what limits and values printed to five digits lose
 constexpr double kRateSlack = 0.01;      // Relative, velocities at samples and accelerations.
-// Between samples an acceleration may jump: stored ones then are off, at few places and by less than the limit.
-constexpr double kFitSlack = 0.1;       // Share of the limit that counts as off.
-constexpr double kShareOff = 0.15;      // Share of the places that may be off.
-constexpr double kMostOff = 0.8;        // Share of the limit that none may be off by.
-constexpr double kRateRounding = 1e-9;  // [rad/s] or [m/s]
 constexpr double kLargest = 1e6;  // No position [rad, m] or speed is beyond this: it would only break the arithmetic.
 constexpr double kBetweenSlack =
     0.05;  // Relative, velocities between samples: a cubic overshoots a trapezoid's corner.
@@ -46,34 +42,7 @@ void report(const Worst& worst, const char* code, const char* quantity, const ch
                         text(worst.value) + ", the limit " + text(worst.bound) + " " + unit});
 }
 
-/// What the velocities change by between samples lies between the stored accelerations there.
-void check_accelerations_fit(const Context& context, const CheckedMotion& motion, const std::string& where,
-                             Faults& faults) {
-  const std::vector<double>& limits = context.plan.acceleration_limits;
-  Worst worst;
-  std::size_t off = 0, all = 0;
-  for (std::size_t i = 0; i + 1 < motion.times.size(); ++i) {
-    const double h = motion.times[i + 1] - motion.times[i];
-    for (std::size_t j = 0; j < limits.size(); ++j) {
-      const double mean = (motion.velocities[i + 1][j] - motion.velocities[i][j]) / h;
-      const double a = motion.accelerations[i][j], b = motion.accelerations[i + 1][j];
-      const double beyond = std::max({std::min(a, b) - mean, mean - std::max(a, b), 0.0}) - kRateRounding / h;
-      worst.see(beyond / limits[j], beyond, limits[j], static_cast<int>(j), motion.times[i]);
-      off += beyond > kFitSlack * limits[j];
-      ++all;
-    }
-  }
-  if (worst.joint < 0 ||
-      (worst.excess <= kMostOff && static_cast<double>(off) <= 2 + kShareOff * static_cast<double>(all)))
-    return;
-  faults.push_back({"acceleration", where + ", t = " + text(worst.time) + " s",
-                    "the stored accelerations are not those of the velocities at " + std::to_string(off) + " of " +
-                        std::to_string(all) + " places; the acceleration of '" + context.plan.arm_joints[worst.joint] +
-                        "' is off by " + text(worst.value)});
-}
-
-/// The accelerations a plan stores besides: as many as samples, within the limits, and those that the velocities
-/// change by.
+/// The accelerations a plan stores besides: as many as samples, within the limits, and those of the cubics.
 void check_stored_accelerations(const Context& context, const CheckedMotion& motion, const std::string& where,
                                 Faults& faults) {
   if (motion.accelerations.empty()) return;
@@ -90,7 +59,7 @@ void check_stored_accelerations(const Context& context, const CheckedMotion& mot
                       "the stored accelerations must be one a sample and joint, each within the acceleration limits"});
     return;
   }
-  check_accelerations_fit(context, motion, where, faults);
+  check_accelerations_fit(motion, limits, context.plan.arm_joints, where, faults);
 }
 
 }  // namespace

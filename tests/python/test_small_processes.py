@@ -1,0 +1,58 @@
+"""Little memory, little stack: the command works, or says so in one line."""
+
+from __future__ import annotations
+
+import resource
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from conftest import ASSETS
+
+ROBOT = str(ASSETS / "robots" / "omni6" / "omni6.urdf")
+ENTRY = "import sys, mmgrasp_command; sys.exit(mmgrasp_command.main())"
+
+
+def command(kind: int, limit: int, *arguments: str) -> subprocess.CompletedProcess[str]:
+    """Runs the command in a process that has so much of something [bytes]."""
+
+    def restrict() -> None:
+        resource.setrlimit(kind, (limit, resource.getrlimit(kind)[1]))
+
+    call = [sys.executable, "-c", ENTRY, *arguments]
+    return subprocess.run(call, preexec_fn=restrict, capture_output=True, text=True, timeout=300)
+
+
+@pytest.mark.parametrize("megabytes", [60, 100, 150, 200, 250, 300])
+def test_little_memory_is_one_message(megabytes: int) -> None:
+    done = command(resource.RLIMIT_AS, megabytes * 1_000_000, "check", ROBOT)
+    assert "Traceback" not in done.stderr
+    said = [line for line in done.stderr.splitlines() if line.strip()]
+    assert len(said) == 1 and len(said[0]) < 400, done.stderr
+    if "OpenBLAS error" not in said[0]:  # a library that ends the process by itself, with a line of its own
+        assert said[0].startswith("mmgrasp: ")
+        assert done.returncode == 2
+
+
+@pytest.mark.slow
+def test_little_memory_while_planning_is_one_message(small_path: Path, tmp_path: Path) -> None:
+    told = 0
+    for megabytes in (350, 400, 450):
+        done = command(
+            resource.RLIMIT_AS, megabytes * 1_000_000, "plan", str(small_path), "-o", str(tmp_path / str(megabytes))
+        )
+        assert "Traceback" not in done.stderr, done.stderr
+        assert done.returncode in (0, 2, 4)
+        told += done.returncode == 2
+        assert done.stderr.count("mmgrasp: ") == (done.returncode == 2), done.stderr
+    assert told > 0
+
+
+@pytest.mark.slow
+def test_threads_have_stacks_of_their_own(small_path: Path, tmp_path: Path) -> None:
+    """A thread's stack is as large as the process's unless told otherwise: with 128 kB planning ended in a crash."""
+    done = command(resource.RLIMIT_STACK, 128 * 1024, "plan", str(small_path), "-o", str(tmp_path), "--no-pictures")
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "plan.json").is_file()

@@ -90,7 +90,7 @@ TEST(SparseLdlt, FindsInertiaAndSolutionOfBandsWithBorders) {
     EXPECT_LT(residual(ldlt, A, VectorXd::Random(n)), 1e-13) << "trial " << trial;
   }
   EXPECT_GT(regular, 1000);
-  EXPECT_GT(waited, 500);
+  EXPECT_GT(waited, 200);
 }
 
 TEST(SparseLdlt, SaysWhatIsSingular) {

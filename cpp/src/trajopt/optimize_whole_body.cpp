@@ -59,13 +59,12 @@ WholeBodyResult optimize_whole_body(const WholeBodyProblem& problem, const Whole
   for (const ToolConstraint& tool : problem.tool) pinned.push_back(tool.waypoint);
   detail::CollisionRows rows(checkers, pinned, options.margin, options.constraint_distance);
   Eigen::VectorXd x;
-  {
-    const detail::WholeBodyNlp nlp(problem, options.smoothing);
-    x = nlp.pack(guess);
-    if (!checkers.empty() && guess.collision_free) rows.keep_clear(guess.positions, guess.keeps_sides);
-  }
   for (int round = 0;; ++round) {
     detail::WholeBodyNlp nlp(problem, options.smoothing);
+    if (round == 0) {
+      x = nlp.pack(guess);
+      if (!checkers.empty() && guess.collision_free) rows.keep_clear(guess.positions, guess.keeps_sides);
+    }
     rows.add_to(nlp, diff_drive);
     nlp_options.time_limit = std::max(1e-3, options.time_limit - stopwatch.seconds());
     const NlpResult answer = solver->solve(nlp, x, nlp_options, monitor);

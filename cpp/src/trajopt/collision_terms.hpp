@@ -22,8 +22,9 @@ namespace mmgrasp::detail {
 /// distance (P1 4.10) up to second order.
 struct SeparatingPlane {
   std::shared_ptr<const ToolChain> a, b;  ///< Chains to the links of the nearest points; `b` null: that point is fixed.
-  Eigen::Vector3d p_a = Eigen::Vector3d::Zero(), p_b = p_a;  ///< The points in their links' frames, fixed: in the world.
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();         ///< Unit, from b to a.
+  Eigen::Vector3d p_a = Eigen::Vector3d::Zero(),
+                  p_b = p_a;                          ///< The points in their links' frames, fixed: in the world.
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< Unit, from b to a.
   double margin = 0;
 };
 

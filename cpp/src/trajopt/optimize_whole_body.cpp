@@ -14,14 +14,6 @@ namespace {
 constexpr double kBarrier = 1e-2;  // the first; durations are of the order of 10 s
 constexpr double kRepair = 1e-2;   // barrier with which a solution is repaired
 
-std::shared_ptr<const WholeBodyTrajectory> trajectory_of(const WholeBodyProblem& problem,
-                                                         const detail::WholeBodyNlp& nlp, const Eigen::VectorXd& x) {
-  WholeBodyGuess g = nlp.unpack(x);
-  std::vector<double> times{0};
-  for (int i = 0; i < nlp.layout().intervals(); ++i) times.push_back(times.back() + g.steps[nlp.layout().segment(i)]);
-  return std::make_shared<const WholeBodyTrajectory>(problem.group, times, g.positions, g.drive);
-}
-
 }  // namespace
 
 void WholeBodyOptions::check() const {
@@ -71,7 +63,7 @@ WholeBodyResult optimize_whole_body(const WholeBodyProblem& problem, const Whole
     result.iterations += answer.iterations;
     result.message = answer.message;
     result.outcome = answer.outcome;
-    result.trajectory = trajectory_of(problem, nlp, answer.x);
+    result.trajectory = std::make_shared<const WholeBodyTrajectory>(nlp.trajectory(answer.x));
     x = answer.x;
     if (checkers.empty() || !result.usable() || round == options.refinements) break;
     if (!rows.look_along(*result.trajectory)) break;

@@ -51,11 +51,15 @@ class WithEnergy(mg.optim.NonlinearProblem):
 
 
 guess = program.guess
-for weight in (0.0, 1.0, 10.0):
+for weight in (0.0, 1.0, 100.0):
     problem = WithEnergy(program, weight)
-    found = mg.optim.solve_nonlinear(problem, guess, tolerance=1e-4, barrier=1e-2, warm_start=0.0 if weight == 0 else 1e-2)
+    found = mg.optim.solve_nonlinear(
+        problem, guess, tolerance=1e-4, barrier=1e-2, warm_start=0.0 if weight == 0 else 1e-2
+    )
     kept = all(v["kept"] for v in program.violations(found.x).values())
     duration = program.trajectory(found.x).duration
-    print(f"weight {weight:4.1f} s: {duration:6.2f} s, mean square of the arm's accelerations {problem.energy(found.x):.3f} rad^2/s^4,")
+    print(
+        f"weight {weight:5.1f} s: {duration:.3f} s, mean square of the arm's accelerations {problem.energy(found.x):.3f} rad^2/s^4,"
+    )
     print(f"  {found.outcome.name} in {found.iterations} iterations, {'all limits kept' if kept else 'limits broken'}")
     guess = found.x

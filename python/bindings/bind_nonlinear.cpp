@@ -46,6 +46,10 @@ auto as_pattern(const char* name) {
   };
 }
 
+/// An array argument whose type does not forbid that a method which overrides this one takes arrays alone.
+constexpr char kFloats[] = "numpy.typing.NDArray[numpy.float64]";
+using Floats = Shown<kFloats>;
+
 /// A problem whose methods a Python class overrides; those that it leaves out are its base's.
 class PythonProblem : public NonlinearProblem {
  public:
@@ -142,7 +146,7 @@ Places shown(const SparsePattern& pattern) {
   return py::make_tuple(py::array_t<int>(n, pattern.rows.data()), py::array_t<int>(n, pattern.columns.data()));
 }
 
-Eigen::VectorXd variables(const NonlinearProblem& problem, const ArrayLike& x) {
+Eigen::VectorXd variables(const NonlinearProblem& problem, const Floats& x) {
   return vector_argument(x, "x", problem.variable_bounds().lower.size());
 }
 
@@ -185,7 +189,7 @@ void bind_problem(py::module_& m) {
       .def(py::init([](const MaybeProblem& base) {
              return std::make_shared<PythonProblem>(base.is_none() ? nullptr : shared_problem(base, "base"));
            }),
-           py::arg("base") = py::none(), py::keep_alive<1, 2>(), "Of one's own, on top of another problem or on none.")
+           py::arg("base") = py::none(), py::keep_alive<1, 2>(), "A problem of one's own, on top of `base` or on none.")
       .def_property_readonly(
           "base",
           [](const P& p) -> MaybeProblem {
@@ -200,10 +204,10 @@ void bind_problem(py::module_& m) {
           "constraint_bounds", [](const P& p) { return shown(p.constraint_bounds()); },
           "Lower and upper (m,); equal for an equation.")
       .def(
-          "objective", [](P& p, const ArrayLike& x) { return p.objective(variables(p, x)); }, py::arg("x"), "f(x)")
+          "objective", [](P& p, const Floats& x) { return p.objective(variables(p, x)); }, py::arg("x"), "f(x)")
       .def(
           "gradient",
-          [](P& p, const ArrayLike& x) {
+          [](P& p, const Floats& x) {
             const Eigen::VectorXd at = variables(p, x);
             Eigen::VectorXd out(at.size());
             p.gradient(at, out);
@@ -212,7 +216,7 @@ void bind_problem(py::module_& m) {
           py::arg("x"), "(n,) of f")
       .def(
           "constraints",
-          [](P& p, const ArrayLike& x) {
+          [](P& p, const Floats& x) {
             const Eigen::VectorXd at = variables(p, x);
             Eigen::VectorXd out(p.constraint_bounds().lower.size());
             p.constraints(at, out);
@@ -225,7 +229,7 @@ void bind_problem(py::module_& m) {
           "that repeat add up.")
       .def(
           "jacobian",
-          [](P& p, const ArrayLike& x) {
+          [](P& p, const Floats& x) {
             const Eigen::VectorXd at = variables(p, x);
             Eigen::VectorXd out(static_cast<Eigen::Index>(p.jacobian_pattern().size()));
             p.jacobian(at, out);
@@ -238,12 +242,12 @@ void bind_problem(py::module_& m) {
           "add up.")
       .def(
           "hessian",
-          [](P& p, const ArrayLike& x, const Given<double>& factor, const ArrayLike& multipliers) {
+          [](P& p, const Floats& x, double factor, const Floats& multipliers) {
             const Eigen::VectorXd at = variables(p, x);
             const Eigen::VectorXd of_rows =
                 vector_argument(multipliers, "multipliers", p.constraint_bounds().lower.size());
             Eigen::VectorXd out(static_cast<Eigen::Index>(p.hessian_pattern().size()));
-            p.hessian(at, taken(factor, "factor"), of_rows, out);
+            p.hessian(at, factor, of_rows, out);
             return out;
           },
           py::arg("x"), py::arg("factor"), py::arg("multipliers"),
@@ -309,9 +313,8 @@ void bind_solver(py::module_& m) {
         const NlpOptions read = read_options(nlp_fields(), options, "solve_nonlinear");
         const std::shared_ptr<NonlinearProblem> to_solve = shared_problem(problem, "problem");
         const Eigen::VectorXd guess = vector_argument(given_guess, "guess");
-        const auto by = make_nlp_solver(solver);
         return LongCall(progress).run(
-            [&](const Monitor& monitor) { return by->solve(*to_solve, guess, read, monitor); });
+            [&](const Monitor& monitor) { return solve_nonlinear(solver, *to_solve, guess, read, monitor); });
       },
       py::arg("problem"), py::arg("guess"), py::kw_only(), py::arg("solver") = "ipopt",
       py::arg("progress") = py::none(),
@@ -355,9 +358,9 @@ void bind_program(py::module_& m) {
         DriveByOptions options;
         options.waypoints = taken(waypoints, "waypoints");
         const Eigen::VectorXd from = vector_argument(start, "start", group.size());
-        const auto first = first_drive_by_guess(group, from, tasks, goal_argument(goal, group.size()), options);
-        if (!first) return py::none();
-        return py::cast(std::make_unique<P>(first->problem, first->guess, taken(smoothing, "smoothing")));
+        options.trajectory.smoothing = taken(smoothing, "smoothing");
+        auto made = drive_by_program(group, from, tasks, goal_argument(goal, group.size()), options);
+        return made ? py::cast(std::move(*made)) : py::none();
       },
       py::arg("group"), py::kw_only(), py::arg("start"), py::arg("tasks"), py::arg("goal"), py::arg("waypoints") = 35,
       py::arg("smoothing") = WholeBodyOptions().smoothing,

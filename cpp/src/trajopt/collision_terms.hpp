@@ -43,7 +43,7 @@ class CollisionTerm : public CurvedTerm {
     std::vector<ToolChain::State> links;
   };
   struct Links {
-    int a, b;  ///< Of one plane, in `chains_`; -1: fixed.
+    int a, b;  ///< Where a plane's links are in `chains_`; -1: fixed.
   };
   /// Solvers ask for value, Jacobian and Hessian in turn at the same x.
   const Place& placed(const double* x) const;

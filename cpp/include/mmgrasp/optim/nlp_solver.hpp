@@ -62,4 +62,9 @@ MMGRASP_EXPORT std::vector<std::string> nlp_solver_names();
 /// Throws InvalidInput listing the known names on a wrong one.
 MMGRASP_EXPORT std::unique_ptr<NlpSolver> make_nlp_solver(const std::string& name);
 
+/// A local optimum near the guess by the solver of that name.
+MMGRASP_EXPORT NlpResult solve_nonlinear(const std::string& solver, NonlinearProblem& problem,
+                                         const Eigen::VectorXd& guess, const NlpOptions& options = {},
+                                         const Monitor& monitor = {});
+
 }  // namespace mmgrasp

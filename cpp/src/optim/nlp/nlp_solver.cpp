@@ -88,4 +88,9 @@ std::unique_ptr<NlpSolver> make_nlp_solver(const std::string& name) {
   return nullptr;
 }
 
+NlpResult solve_nonlinear(const std::string& solver, NonlinearProblem& problem, const Eigen::VectorXd& guess,
+                          const NlpOptions& options, const Monitor& monitor) {
+  return make_nlp_solver(solver)->solve(problem, guess, options, monitor);
+}
+
 }  // namespace mmgrasp

@@ -104,7 +104,7 @@ std::vector<int> column_counts(const Lists& before, const std::vector<int>& pare
 /// Columns that are eliminated together, as a tree of groups.
 struct Groups {
   std::vector<int> of;       ///< Group of each column.
-  std::vector<int> parent;   ///< Of each group; -1: none.
+  std::vector<int> parent;   ///< Each group's parent; -1: none.
   std::vector<int> columns;  ///< Number of each group's columns.
 };
 

@@ -13,7 +13,7 @@ struct LowerColumns {
   int size() const { return static_cast<int>(starts.size()) - 1; }
 };
 
-/// In which order a symmetric sparse matrix is eliminated, and in which dense matrices ("fronts", Duff and Reid 1983).
+/// The order in which a symmetric sparse matrix is eliminated, and the dense matrices ("fronts", Duff and Reid 1983).
 /// A front takes its own columns out, all of which have non-zeros in about the same rows, and hands what is left of the
 /// others to its parent.
 struct MMGRASP_EXPORT AssemblyTree {
@@ -22,7 +22,7 @@ struct MMGRASP_EXPORT AssemblyTree {
     std::vector<int> rows;       ///< The other positions, ascending, all of them later.
     int children = 0;            ///< The fronts that hand on to it are the last that nobody has taken.
   };
-  std::vector<int> position;  ///< Of each row and column in the order.
+  std::vector<int> position;  ///< Where each row and column comes in the order.
   std::vector<Front> fronts;  ///< Children before their parents.
 
   /// Order of least degree (AMD), for little fill; small fronts are joined with their parents.

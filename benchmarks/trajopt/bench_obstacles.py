@@ -17,9 +17,8 @@ from grasp_cases import GOAL, START, arguments, furnished, grasps, line, plan, t
 import mmgrasp as mg
 
 
-def sampled(world: mg.World, pose: np.ndarray, time_limit: float) -> bool:
+def sampled(robot: mg.Robot, group: mg.robot.JointGroup, world: mg.World, pose: np.ndarray, time_limit: float) -> bool:
     """A path through the grasp exists, as far as sampling tells."""
-    robot, group = whole_body()
     options = {"time_limit": time_limit, "max_iterations": 200_000, "shorten": False}
     there = mg.plan_motion(robot, group, world, start=START, tool_poses=pose, ik_solutions=16, **options)
     if there.outcome != mg.Outcome.solved:
@@ -38,7 +37,7 @@ def main() -> None:
             world = furnished(pose, 1000 * seed + i)
             seconds, found = timed(lambda: plan([mg.DriveByTask(pose)], world, waypoints=given.waypoints))  # noqa: B023
             solved = found.outcome == mg.Outcome.solved
-            exists = solved or sampled(world, pose, given.time_limit)
+            exists = solved or sampled(*whole_body(), world, pose, given.time_limit)
             runs.append((seconds, found, exists))
             if given.verbose and exists and not solved:
                 print(f"seed {seed}, pose {i}:\n{found.report}", file=sys.stderr, flush=True)

@@ -74,6 +74,31 @@ def furnished(pose: np.ndarray, seed: int) -> mg.World:
     return world
 
 
+def can_on_a_table(rng: np.random.Generator) -> tuple[mg.World, np.ndarray]:
+    """Furniture at the grasp: a can on a table beside the lane, a wall behind the table, a cupboard beside it, in every second room a board
+    above; and the pose from which the hand takes the can, from the lane within 60 degrees of straight across."""
+    world = mg.World()
+    side, x, edge = rng.choice([-1, 1]), rng.uniform(2.5, 7.5), rng.uniform(0.6, 1.4)
+    top, width, depth = rng.uniform(0.5, 0.9), rng.uniform(0.8, 1.4), rng.uniform(0.4, 0.6)
+    radius, height = rng.uniform(0.022, 0.03), rng.uniform(0.1, 0.18)
+
+    def block(name: str, size: list[float], along: float, across: float, bottom: float) -> None:
+        """`across`: from the table's edge away from the lane."""
+        world.add_box(name, size=size, pose=mg.pose([x + along, side * (edge + across), bottom + size[2] / 2]))
+
+    place = [rng.uniform(-0.3, 0.3) * width, rng.uniform(0.05, 0.2)]
+    block("table", [width, depth, top], 0, depth / 2, 0)
+    block("wall", [13, 0.1, 1.5], 5 - x, depth + rng.uniform(0, 0.3) + 0.05, 0)
+    beside = rng.choice([-1, 1]) * (width / 2 + rng.uniform(0.05, 0.4) + 0.2)
+    block("cupboard", [0.4, depth, 1.5], beside, depth / 2, 0)
+    if rng.random() < 0.5:
+        block("board", [width, 0.7 * depth, 0.03], 0, 0.65 * depth, top + height + rng.uniform(0.15, 0.3))
+    at = [x + place[0], side * (edge + place[1])]
+    world.add("can", [mg.LinkShape(mg.Cylinder(radius, height))], mg.pose([*at, top + height / 2 + 0.001]))
+    yaw = side * (np.pi / 2 + rng.uniform(-np.pi / 3, np.pi / 3))
+    return world, mg.pose([*at, top + rng.uniform(0.45, 0.8) * height], rpy=[0, 0, yaw])
+
+
 def timed(work: Callable[[], Any]) -> tuple[float, Any]:
     """Processor seconds and what came out."""
     begun = time.process_time()

@@ -19,7 +19,7 @@ sys.path.insert(0, str(HERE.parent))
 from programs import BUILD, baselines_environment, full_table, lines_of, packages_of
 from tables import ROOT, markdown, show
 
-PROGRAMS = ("random_grasps", "obstacles", "waypoints", "tasks")
+PROGRAMS = ("random_grasps", "obstacles", "at_grasp", "waypoints", "tasks")
 # Row, what a line's `on` begins with, field, bound, whether it may be at most that.
 GOALS = (
     ("random grasps", "seed", "solved", 0.99, False),
@@ -27,6 +27,10 @@ GOALS = (
     ("random grasps", "seed", "base_above", 0.9, False),
     ("tables and walls", "seed", "solved", 0.95, False),
     ("tables and walls", "seed", "value", 1.5, True),
+    ("furniture at the grasp", "seed", "solved", 0.98, False),
+    ("furniture at the grasp", "seed", "value", 0.5, True),
+    ("furniture at the grasp", "seed", "p95", 2.0, True),
+    ("waypoints", "300", "value", 0.2, True),
     ("waypoints", "", "slope", 1.1, True),
     ("waypoints", "", "spread", 0.02, True),
     ("several tasks", "m", "solved", 1.0, False),

@@ -1,3 +1,4 @@
+#include "any_numbers.hpp"
 #include "bindings.hpp"
 #include "given.hpp"
 #include "mmgrasp/optim/assignment.hpp"
@@ -29,21 +30,6 @@ const std::vector<OptionField<DerivativeFreeOptions>>& derivative_free_fields() 
       option<O>("time_limit", &O::time_limit, "wall-clock cap [s]"),
       option<O>("seed", &O::seed, "same seed, same answer")};
   return fields;
-}
-
-/// (n,), also infinite or NaN; size < 0 takes any length.
-Eigen::VectorXd any_numbers(const py::handle& value, const std::string& name, Eigen::Index size,
-                            const std::string& like = "") {
-  const py::array given = py::array::ensure(value);
-  if (!given || std::string("fiub").find(given.dtype().kind()) == std::string::npos) {
-    PyErr_Clear();
-    throw InvalidInput(name + ": must be an array of numbers");
-  }
-  if (given.ndim() != 1 || (size >= 0 && given.shape(0) != size)) {
-    throw InvalidInput(name + " has shape " + std::string(py::str(given.attr("shape"))) + ": must be (" +
-                       (size >= 0 ? std::to_string(size) : "n") + ",)" + like);
-  }
-  return py::cast<Eigen::VectorXd>(py::array_t<double, py::array::forcecast>(given));
 }
 
 DerivativeFreeResult minimize(const Objective& objective, const ArrayLike& given_guess, const ArrayLike& given_lower,

@@ -2,6 +2,7 @@
 #include <ctime>
 
 #include "bindings.hpp"
+#include "drive_by_arguments.hpp"
 #include "mmgrasp/optim/nlp_solver.hpp"
 #include "mmgrasp/task/drive_by.hpp"
 #include "push_fields.hpp"
@@ -12,8 +13,6 @@ namespace {
 
 constexpr char kEventRows[] = "list[mmgrasp.records.DriveByEventRow]";
 using EventRows = Shown<kEventRows>;
-constexpr char kViolationRows[] = "dict[str, mmgrasp.records.ViolationRow]";
-using ViolationRows = Shown<kViolationRows>;
 constexpr char kPushKeywords[] = "dict[str, typing.Any]";
 using PushKeywords = ShownDict<kPushKeywords>;
 constexpr char kOptionalPush[] = "mmgrasp._core.PushGrasp | typing.Any";
@@ -60,12 +59,6 @@ const std::vector<OptionField<DriveByOptions>>& drive_by_fields() {
 py::dict violation_dict(const Violation& v) {
   return py::dict("value"_a = v.value, "tolerance"_a = v.tolerance, "unit"_a = v.unit, "time"_a = v.time,
                   "waypoint"_a = v.waypoint, "what"_a = v.what, "kept"_a = v.kept());
-}
-
-ViolationRows violations_dict(const std::vector<Violation>& violations) {
-  py::dict result;
-  for (const Violation& v : violations) result[v.kind.c_str()] = violation_dict(v);
-  return result;
 }
 
 py::dict event_dict(const DriveByEvent& e) {
@@ -288,18 +281,6 @@ void bind_drive_by_result(py::module_& m) {
       });
 }
 
-DriveByGoal goal_argument(const ArrayLike& goal, Eigen::Index size) {
-  const py::array array = py::array::ensure(goal);
-  PyErr_Clear();
-  if (array && array.ndim() == 2) {
-    const Eigen::MatrixXd box = matrix_argument(goal, "goal", size, true);
-    if (box.rows() != 2) throw InvalidInput("goal: must be (n,), or (2, n) with lower and upper bounds");
-    return {box.row(0).transpose(), box.row(1).transpose()};
-  }
-  const Eigen::VectorXd q = configuration_argument(goal, "goal", size);
-  return {q, q};
-}
-
 DriveByResult shorten(const JointGroup& group, const World& world, const std::vector<DriveByTask>& tasks,
                       std::vector<double> times, const ArrayLike& positions, std::vector<double> task_times,
                       const Progress& progress, const py::kwargs& options) {
@@ -324,6 +305,24 @@ DriveByResult drive_by(const Robot& robot, const JointGroup& group, const World&
 }
 
 }  // namespace
+
+ViolationRows violations_dict(const std::vector<Violation>& violations) {
+  py::dict result;
+  for (const Violation& v : violations) result[v.kind.c_str()] = violation_dict(v);
+  return result;
+}
+
+DriveByGoal goal_argument(const ArrayLike& goal, Eigen::Index size) {
+  const py::array array = py::array::ensure(goal);
+  PyErr_Clear();
+  if (array && array.ndim() == 2) {
+    const Eigen::MatrixXd box = matrix_argument(goal, "goal", size, true);
+    if (box.rows() != 2) throw InvalidInput("goal: must be (n,), or (2, n) with lower and upper bounds");
+    return {box.row(0).transpose(), box.row(1).transpose()};
+  }
+  const Eigen::VectorXd q = configuration_argument(goal, "goal", size);
+  return {q, q};
+}
 
 void bind_trajopt(py::module_& m) {
   m.def("nlp_solver_names", &nlp_solver_names, "Names that plan_drive_by's `solver` takes.");

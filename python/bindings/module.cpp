@@ -17,6 +17,7 @@ void bind_graspability(py::module_& m);
 void bind_synthesis(py::module_& m);
 void bind_capability(py::module_& m);
 void bind_trajopt(py::module_& m);
+void bind_nonlinear(py::module_& m);
 void bind_robot_motion(py::module_& m);
 void bind_control(py::module_& m);
 void bind_structure(py::module_& m);
@@ -87,6 +88,7 @@ PYBIND11_MODULE(_core, m) {
   bind_push_grasp(m);
   bind_task(m);
   bind_trajopt(m);
+  bind_nonlinear(m);
   bind_robot_motion(m);
   bind_pickle(m);
   bind_platform_locations(m);

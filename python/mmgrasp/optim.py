@@ -1,4 +1,5 @@
-"""Optimisation: set covers, tours, assignments and shared stops with proof; search by values without derivatives; weights of objectives."""
+"""Optimisation: set covers, tours, assignments and shared stops with proof; search by values without
+derivatives; nonlinear problems of one's own; weights of objectives."""
 
 from ._core import (
     solve_set_cover as solve_set_cover,
@@ -11,6 +12,9 @@ from ._core import (
     minimize_derivative_free as minimize_derivative_free,
     derivative_free_solver_names as derivative_free_solver_names,
     DerivativeFreeResult as DerivativeFreeResult,
+    NonlinearProblem as NonlinearProblem,
+    NlpResult as NlpResult,
+    solve_nonlinear as solve_nonlinear,
     pairwise_weights as pairwise_weights,
     PairwiseWeights as PairwiseWeights,
 )

@@ -55,6 +55,8 @@ from ._core import (
     shorten_drive_by as shorten_drive_by,
     nlp_solver_names as nlp_solver_names,
     DriveByResult as DriveByResult,
+    WholeBodyProgram as WholeBodyProgram,
+    drive_by_program as drive_by_program,
     WholeBodyTrajectory as WholeBodyTrajectory,
 )
 

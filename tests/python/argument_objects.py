@@ -114,6 +114,43 @@ def seven_joint_hand() -> mg.Robot:
     return mg.Robot.load(Path(mg.__file__).parent / "assets" / "grippers" / "sdhlike" / "sdhlike.urdf")
 
 
+def drive_by_program() -> mg.planning.WholeBodyProgram:
+    made = mg.planning.drive_by_program(ARM, start=Q, tasks=[], goal=Q / 2, waypoints=5)
+    assert made is not None
+    return made
+
+
+class Bowl(mg.optim.NonlinearProblem):
+    """Least squares of two numbers."""
+
+    def variable_bounds(self) -> Any:
+        return np.full(2, -np.inf), np.full(2, np.inf)
+
+    def constraint_bounds(self) -> Any:
+        return [], []
+
+    def objective(self, x: np.ndarray) -> float:
+        return float(x @ x)
+
+    def gradient(self, x: np.ndarray) -> Any:
+        return 2 * x
+
+    def constraints(self, x: np.ndarray) -> Any:
+        return []
+
+    def jacobian_pattern(self) -> Any:
+        return [], []
+
+    def jacobian(self, x: np.ndarray) -> Any:
+        return []
+
+    def hessian_pattern(self) -> Any:
+        return [0, 1], [0, 1]
+
+    def hessian(self, x: np.ndarray, factor: float, multipliers: np.ndarray) -> Any:
+        return [2 * factor, 2 * factor]
+
+
 FINGERS = [(f, [f"{f}_proximal", f"{f}_distal"]) for f in ("thumb", "finger_1", "finger_2")] + [("spread", ["spread"])]
 
 
@@ -161,6 +198,7 @@ def assembly_grasp() -> mg.gripper_design.AssemblyGrasp:
 
 
 OBJECTS: dict[str, Any] = {
+    "WholeBodyProgram": drive_by_program,
     "Robot": lambda: ROBOT,
     "RobotSource": lambda: ROBOT.source,
     "JointGroup": lambda: ARM,

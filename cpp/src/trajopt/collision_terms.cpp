@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <tuple>
 
 #include "mmgrasp/core/detail/numbers.hpp"
 
@@ -23,74 +24,58 @@ VectorXd at_sample(const WholeBodyTrajectory& t, int interval, double s) {
   return s == 0 ? t.positions()[i] : t.at(t.times()[i] + s * (t.times()[i + 1] - t.times()[i]));
 }
 
-std::shared_ptr<const ToolChain> chain_to(const CollisionChecker& checker, const std::string& body,
-                                          const Eigen::Vector3d& p_world, const Poses& T_world_link) {
-  const auto& attached = checker.world().attached();
-  const auto held = attached.find(body);
-  const JointGroup& group = checker.group();
-  const int link = group.robot().link_index(held == attached.end() ? body : held->second.link);
-  Pose T_link_point = Pose::Identity();
-  T_link_point.translation() = T_world_link[link].inverse() * p_world;
-  return std::make_shared<const ToolChain>(group, link, T_link_point);
-}
-
-/// Adds sign * normal . d p / d q to a gradient, and `weight` times the second derivatives to H.
-void add_point(const ToolChain& chain, const VectorXd& q, const Eigen::Vector3d& along, double* value,
-               VectorXd* gradient, MatrixXd* H) {
-  ToolChain::State s;
-  chain.evaluate(q.data(), s);
-  if (value) *value += along.dot(s.p);
-  const auto column = [&](std::size_t i) { return chain.steps()[i].column; };
-  for (std::size_t i = 0; i < s.v.size(); ++i) {
-    if (gradient) (*gradient)[column(i)] += along.dot(s.v[i]);
-    if (!H) continue;
-    for (std::size_t j = i; j < s.v.size(); ++j) {
-      const double second = along.dot(ToolChain::second(s, i, j));
-      (*H)(column(i), column(j)) += second;
-      if (i != j) (*H)(column(j), column(i)) += second;
-    }
-  }
-}
-
-void add_separation(const SeparatingPlane& plane, const VectorXd& q, double factor, double* value, VectorXd* gradient,
-                    MatrixXd* H) {
-  add_point(*plane.a, q, factor * plane.normal, value, gradient, H);
-  if (plane.b) {
-    add_point(*plane.b, q, -factor * plane.normal, value, gradient, H);
-  } else if (value) {
-    *value -= factor * plane.normal.dot(plane.p_b);
-  }
+/// The point p of a link, in the world.
+Eigen::Vector3d point_on(const ToolChain::State& link, const Eigen::Vector3d& p) {
+  return link.p + link.rotation * p;
 }
 
 double separation(const SeparatingPlane& plane, const VectorXd& q) {
-  double value = 0;
-  add_separation(plane, q, 1, &value, nullptr, nullptr);
-  return value;
+  ToolChain::State link;
+  const auto placed = [&](const std::shared_ptr<const ToolChain>& chain, const Eigen::Vector3d& p) {
+    if (!chain) return p;
+    chain->evaluate(q.data(), link);
+    return point_on(link, p);
+  };
+  return plane.normal.dot(placed(plane.a, plane.p_a) - placed(plane.b, plane.p_b));
 }
 
 /// Planes between bodies in one configuration.
 class PlaneMaker {
  public:
-  PlaneMaker(CollisionChecker& checker, const VectorXd& q) : checker_(checker), q_(q) {
+  PlaneMaker(CollisionChecker& checker, const VectorXd& q, std::map<int, std::shared_ptr<const ToolChain>>& chains)
+      : checker_(checker), q_(q), chains_(chains) {
     checker.group().link_poses(q, T_world_link_);
   }
   const VectorXd& q() const { return q_; }
   std::vector<DistanceResult> distances(double within) { return checker_.distances(q_, within); }
   SeparatingPlane plane(const DistanceResult& d, double margin) const {
     SeparatingPlane plane;
-    plane.a = chain_to(checker_, d.a, d.point_a, T_world_link_);
+    std::tie(plane.a, plane.p_a) = on_link(d.a, d.point_a);
     if (d.with_scene)
       plane.p_b = d.point_b;
     else
-      plane.b = chain_to(checker_, d.b, d.point_b, T_world_link_);
+      std::tie(plane.b, plane.p_b) = on_link(d.b, d.point_b);
     plane.normal = (d.point_a - d.point_b) / d.value;
     plane.margin = margin;
     return plane;
   }
 
  private:
+  /// The chain to the link that a body belongs to, and the point in its frame.
+  std::pair<std::shared_ptr<const ToolChain>, Eigen::Vector3d> on_link(const std::string& body,
+                                                                       const Eigen::Vector3d& p_world) const {
+    const auto& attached = checker_.world().attached();
+    const auto held = attached.find(body);
+    const JointGroup& group = checker_.group();
+    const int link = group.robot().link_index(held == attached.end() ? body : held->second.link);
+    std::shared_ptr<const ToolChain>& chain = chains_[link];
+    if (!chain) chain = std::make_shared<const ToolChain>(group, link);
+    return {chain, T_world_link_[link].inverse() * p_world};
+  }
+
   CollisionChecker& checker_;
   VectorXd q_;
+  std::map<int, std::shared_ptr<const ToolChain>>& chains_;
   Poses T_world_link_;
 };
 
@@ -103,32 +88,87 @@ CollisionTerm::CollisionTerm(const IntervalPoint& point, std::vector<SeparatingP
   lower.resize(rows);
   for (Eigen::Index i = 0; i < rows; ++i) lower[i] = planes_[i].margin;
   upper = VectorXd::Constant(rows, kInfinity);
+  for (const SeparatingPlane& plane : planes_) links_.push_back({index_of(plane.a), index_of(plane.b)});
+  place_.links.resize(chains_.size());
+}
+
+int CollisionTerm::index_of(const std::shared_ptr<const ToolChain>& chain) {
+  if (!chain) return -1;
+  const auto known = std::find(chains_.begin(), chains_.end(), chain);
+  const int index = static_cast<int>(known - chains_.begin());
+  if (known == chains_.end()) chains_.push_back(chain);
+  return index;
+}
+
+const CollisionTerm::Place& CollisionTerm::placed(const double* x) const {
+  const Eigen::Map<const VectorXd> locals(x, point_.locals());
+  if (place_.x.size() > 0 && place_.x == locals) return place_;
+  place_.x = locals;
+  const VectorXd q = point_.q(x);
+  for (std::size_t i = 0; i < chains_.size(); ++i) chains_[i]->evaluate(q.data(), place_.links[i]);
+  return place_;
 }
 
 void CollisionTerm::value(const double* x, double* out) const {
-  const VectorXd q = point_.q(x);
-  for (const SeparatingPlane& plane : planes_) {
-    *out = 0;
-    add_separation(plane, q, 1, out++, nullptr, nullptr);
+  const Place& place = placed(x);
+  for (std::size_t r = 0; r < planes_.size(); ++r) {
+    const SeparatingPlane& plane = planes_[r];
+    const Eigen::Vector3d p_a = point_on(place.links[links_[r].a], plane.p_a);
+    const Eigen::Vector3d p_b = links_[r].b < 0 ? plane.p_b : point_on(place.links[links_[r].b], plane.p_b);
+    *out++ = plane.normal.dot(p_a - p_b);
   }
 }
 
 void CollisionTerm::jacobian(const double* x, double* out) const {
-  const VectorXd q = point_.q(x);
+  const Place& place = placed(x);
   const MatrixXd D = point_.jacobian(x);
+  VectorXd gradient(point_.columns());
   for (std::size_t r = 0; r < planes_.size(); ++r) {
-    VectorXd gradient = VectorXd::Zero(point_.columns());
-    add_separation(planes_[r], q, 1, nullptr, &gradient, nullptr);
+    gradient.setZero();
+    const auto add = [&](int i, const Eigen::Vector3d& p, double sign) {
+      if (i < 0) return;
+      const ToolChain::State& link = place.links[i];
+      const Eigen::Vector3d along = sign * planes_[r].normal, moment = (link.rotation * p).cross(along);
+      for (std::size_t j = 0; j < link.v.size(); ++j)
+        gradient[chains_[i]->steps()[j].column] += along.dot(link.v[j]) + moment.dot(link.w[j]);
+    };
+    add(links_[r].a, planes_[r].p_a, 1);
+    add(links_[r].b, planes_[r].p_b, -1);
     Eigen::Map<VectorXd>(out + static_cast<Eigen::Index>(r) * D.cols(), D.cols()) = D.transpose() * gradient;
   }
 }
 
 void CollisionTerm::hessian(const double* x, const double* multipliers, double* out) const {
-  const VectorXd q = point_.q(x);
+  const Place& place = placed(x);
   VectorXd gradient = VectorXd::Zero(point_.columns());
   MatrixXd curvature = MatrixXd::Zero(point_.columns(), point_.columns());
-  for (std::size_t r = 0; r < planes_.size(); ++r)
-    add_separation(planes_[r], q, multipliers[r], nullptr, &gradient, &curvature);
+  for (std::size_t i = 0; i < chains_.size(); ++i) {
+    // All planes pull at a link with one force and, from its origin, one matrix of arms times forces.
+    const ToolChain::State& link = place.links[i];
+    Eigen::Vector3d force = Eigen::Vector3d::Zero(), moment = force;
+    Eigen::Matrix3d arms = Eigen::Matrix3d::Zero();
+    const auto pull = [&](const Eigen::Vector3d& p, const Eigen::Vector3d& f) {
+      const Eigen::Vector3d arm = link.rotation * p;
+      force += f;
+      moment += arm.cross(f);
+      arms += arm * f.transpose();
+    };
+    for (std::size_t r = 0; r < planes_.size(); ++r) {
+      if (links_[r].a == static_cast<int>(i)) pull(planes_[r].p_a, multipliers[r] * planes_[r].normal);
+      if (links_[r].b == static_cast<int>(i)) pull(planes_[r].p_b, -multipliers[r] * planes_[r].normal);
+    }
+    const auto column = [&](std::size_t j) { return chains_[i]->steps()[j].column; };
+    for (std::size_t j = 0; j < link.v.size(); ++j) {
+      gradient[column(j)] += force.dot(link.v[j]) + moment.dot(link.w[j]);
+      const Eigen::Vector3d turned = arms.transpose() * link.w[j] - arms.trace() * link.w[j];
+      for (std::size_t k = j; k < link.v.size(); ++k) {
+        // w_j x (v_k + w_k x arm) . force
+        const double second = force.dot(ToolChain::second(link, j, k)) + turned.dot(link.w[k]);
+        curvature(column(j), column(k)) += second;
+        if (j != k) curvature(column(k), column(j)) += second;
+      }
+    }
+  }
   const MatrixXd D = point_.jacobian(x);
   MatrixXd H = D.transpose() * curvature * D;
   point_.add_curvature(x, gradient, H);
@@ -249,7 +289,7 @@ void CollisionRows::take_planes(const WholeBodyTrajectory& trajectory) {
 void CollisionRows::take_planes_at(const Sample& sample, const VectorXd& q, const std::map<Pair, double>& rooms) {
   CollisionChecker* checker = checkers_[sample.first];
   if (!checker || sample == Sample{0, 0.0}) return;
-  PlaneMaker here(*checker, q);
+  PlaneMaker here(*checker, q, chains_);
   std::optional<PlaneMaker> apart;  // where they are known to be
   std::map<Pair, DistanceResult> known;
   for (const DistanceResult& d : here.distances(constraint_distance_ + kCorners * padding_)) {
@@ -265,7 +305,7 @@ void CollisionRows::take_planes_at(const Sample& sample, const VectorXd& q, cons
     const double clear = d.value - kept_apart(pair);
     if (!planes.empty() && clear > 0) continue;
     if (!apart) {
-      apart.emplace(*checker, reference(sample));
+      apart.emplace(*checker, reference(sample), chains_);
       for (const DistanceResult& r : apart->distances(kFar)) known[{r.with_scene, r.a, r.b}] = r;
     }
     const auto r = known.find(pair);

@@ -21,8 +21,9 @@ namespace mmgrasp::detail {
 /// a normal that is kept. Smooth in the configuration, and at the place where it was taken equal to their signed
 /// distance (P1 4.10) up to second order.
 struct SeparatingPlane {
-  std::shared_ptr<const ToolChain> a, b;  ///< Chains to the nearest points; `b` null: its point is fixed at p_b.
-  Eigen::Vector3d p_b = Eigen::Vector3d::Zero();
+  std::shared_ptr<const ToolChain> a, b;  ///< Chains to the links of the nearest points; `b` null: that point is fixed.
+  Eigen::Vector3d p_a = Eigen::Vector3d::Zero(),
+                  p_b = p_a;                          ///< The points in their links' frames, fixed: in the world.
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< Unit, from b to a.
   double margin = 0;
 };
@@ -36,8 +37,23 @@ class CollisionTerm : public CurvedTerm {
   void hessian(const double* x, const double* multipliers, double* out) const override;
 
  private:
+  /// Where the links are that have points of planes.
+  struct Place {
+    Eigen::VectorXd x;  ///< Locals that it belongs to.
+    std::vector<ToolChain::State> links;
+  };
+  struct Links {
+    int a, b;  ///< Where a plane's links are in `chains_`; -1: fixed.
+  };
+  /// Solvers ask for value, Jacobian and Hessian in turn at the same x.
+  const Place& placed(const double* x) const;
+  int index_of(const std::shared_ptr<const ToolChain>& chain);
+
   IntervalPoint point_;
   std::vector<SeparatingPlane> planes_;
+  std::vector<std::shared_ptr<const ToolChain>> chains_;
+  std::vector<Links> links_;
+  mutable Place place_;
 };
 
 /// Where which pairs of bodies have to be kept apart; planes are taken anew along every trajectory.
@@ -81,6 +97,7 @@ class MMGRASP_EXPORT CollisionRows {
   std::map<Pair, double> paddings_;  ///< Padding of those watched pairs that have any [m].
   std::set<Sample> samples_;         // samples beside the regular ones
   std::vector<Eigen::VectorXd> reference_;
+  std::map<int, std::shared_ptr<const ToolChain>> chains_;  ///< To links that have points of planes.
   std::map<Sample, std::map<Pair, std::vector<SeparatingPlane>>> planes_;
 };
 

@@ -14,14 +14,6 @@ namespace {
 constexpr double kBarrier = 1e-2;  // the first; durations are of the order of 10 s
 constexpr double kRepair = 1e-2;   // barrier with which a solution is repaired
 
-std::shared_ptr<const WholeBodyTrajectory> trajectory_of(const WholeBodyProblem& problem,
-                                                         const detail::WholeBodyNlp& nlp, const Eigen::VectorXd& x) {
-  WholeBodyGuess g = nlp.unpack(x);
-  std::vector<double> times{0};
-  for (int i = 0; i < nlp.layout().intervals(); ++i) times.push_back(times.back() + g.steps[nlp.layout().segment(i)]);
-  return std::make_shared<const WholeBodyTrajectory>(problem.group, times, g.positions, g.drive);
-}
-
 }  // namespace
 
 void WholeBodyOptions::check() const {
@@ -59,20 +51,19 @@ WholeBodyResult optimize_whole_body(const WholeBodyProblem& problem, const Whole
   for (const ToolConstraint& tool : problem.tool) pinned.push_back(tool.waypoint);
   detail::CollisionRows rows(checkers, pinned, options.margin, options.constraint_distance);
   Eigen::VectorXd x;
-  {
-    const detail::WholeBodyNlp nlp(problem, options.smoothing);
-    x = nlp.pack(guess);
-    if (!checkers.empty() && guess.collision_free) rows.keep_clear(guess.positions, guess.keeps_sides);
-  }
   for (int round = 0;; ++round) {
     detail::WholeBodyNlp nlp(problem, options.smoothing);
+    if (round == 0) {
+      x = nlp.pack(guess);
+      if (!checkers.empty() && guess.collision_free) rows.keep_clear(guess.positions, guess.keeps_sides);
+    }
     rows.add_to(nlp, diff_drive);
     nlp_options.time_limit = std::max(1e-3, options.time_limit - stopwatch.seconds());
     const NlpResult answer = solver->solve(nlp, x, nlp_options, monitor);
     result.iterations += answer.iterations;
     result.message = answer.message;
     result.outcome = answer.outcome;
-    result.trajectory = trajectory_of(problem, nlp, answer.x);
+    result.trajectory = std::make_shared<const WholeBodyTrajectory>(nlp.trajectory(answer.x));
     x = answer.x;
     if (checkers.empty() || !result.usable() || round == options.refinements) break;
     if (!rows.look_along(*result.trajectory)) break;

@@ -7,9 +7,9 @@
 
 namespace mmgrasp::detail {
 
-ToolChain::ToolChain(const JointGroup& group) : ToolChain(group, group.tip_link(), Pose::Identity()) {}
+ToolChain::ToolChain(const JointGroup& group) : ToolChain(group, group.tip_link()) {}
 
-ToolChain::ToolChain(const JointGroup& group, int to_link, const Pose& T_link_point) {
+ToolChain::ToolChain(const JointGroup& group, int to_link) {
   const Robot& robot = group.robot();
   const FrameTree& tree = group.data().model->kinematics->tree;
   Rigid before;  // the root in the frame of the step before
@@ -30,7 +30,7 @@ ToolChain::ToolChain(const JointGroup& group, int to_link, const Pose& T_link_po
     steps_.push_back({before * motion->rest, motion->axis, motion->motion == Motion::revolute, motion->drive.column});
     before = Rigid();
   }
-  T_last_tip_ = before * tree.link_in_frame[to_link] * Rigid(T_link_point);
+  T_last_tip_ = before * tree.link_in_frame[to_link];
 }
 
 void ToolChain::evaluate(const double* q, State& state) const {

@@ -14,8 +14,8 @@ class MMGRASP_EXPORT ToolChain {
  public:
   /// The way to the group's tip. Throws InvalidInput for planar, floating and mimicking joints on the way.
   explicit ToolChain(const JointGroup& group);
-  /// The way to a frame on any link.
-  ToolChain(const JointGroup& group, int link, const Pose& T_link_point);
+  /// The way to the frame of any link.
+  ToolChain(const JointGroup& group, int link);
 
   struct Step {
     Rigid before;  ///< The joint in the frame of the one before (in the world, for the first).

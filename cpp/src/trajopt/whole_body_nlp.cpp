@@ -275,14 +275,15 @@ VectorXd WholeBodyNlp::pack(const WholeBodyGuess& guess) const {
   return x.cwiseMax(bounds_.lower).cwiseMin(bounds_.upper);
 }
 
-WholeBodyGuess WholeBodyNlp::unpack(const VectorXd& x) const {
-  WholeBodyGuess result;
+WholeBodyTrajectory WholeBodyNlp::trajectory(const VectorXd& x) const {
+  std::vector<double> times;
+  std::vector<VectorXd> positions, drive;
   for (int i = 0; i <= layout_.intervals(); ++i) {
-    result.positions.push_back(x.segment(layout_.q(i, 0), layout_.columns()));
-    result.drive.push_back(x.segment(layout_.v(i, 0), layout_.drives()));
+    times.push_back(i == 0 ? 0 : times.back() + x[layout_.h(layout_.segment(i - 1))]);
+    positions.push_back(x.segment(layout_.q(i, 0), layout_.columns()));
+    drive.push_back(x.segment(layout_.v(i, 0), layout_.drives()));
   }
-  for (int s = 0; s < static_cast<int>(problem_.segments.size()); ++s) result.steps.push_back(x[layout_.h(s)]);
-  return result;
+  return {problem_.group, times, positions, drive};
 }
 
 Bounds WholeBodyNlp::constraint_bounds() const {

@@ -43,7 +43,7 @@ class MMGRASP_EXPORT WholeBodyNlp : public NonlinearProblem {
   const std::vector<std::unique_ptr<Term>>& terms() const { return terms_; }
 
   Eigen::VectorXd pack(const WholeBodyGuess& guess) const;
-  WholeBodyGuess unpack(const Eigen::VectorXd& x) const;
+  WholeBodyTrajectory trajectory(const Eigen::VectorXd& x) const;
 
   Bounds variable_bounds() const override { return bounds_; }
   Bounds constraint_bounds() const override;

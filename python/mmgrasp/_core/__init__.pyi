@@ -10,7 +10,7 @@ import numpy.typing
 import os
 import typing
 from . import verify
-__all__: list[str] = ['AssemblyGrasp', 'AssemblyOperation', 'BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'BeamExtreme', 'BeamFrame', 'BeamMaterial', 'BeamMember', 'BeamSection', 'BeamState', 'BeamSupport', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactArea', 'ContactPairProvenance', 'ContactPatch', 'CuboidFit', 'Cylinder', 'DepthCamera', 'DepthImage', 'DepthNoise', 'DerivativeFreeResult', 'DistanceField', 'DistanceResult', 'DrawnSuccess', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'Facet', 'FeasibleGrasp', 'FingerGrip', 'FingerLengthRange', 'FittedCuboid', 'FittedPrimitive', 'Grasp', 'GraspHolding', 'GraspOptimum', 'GraspRating', 'GraspReport', 'GraspSuccess', 'GraspSynthesis', 'GraspWidth', 'Graspability', 'GridDistanceField', 'Gripper', 'GripperActuator', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'IntegrationReport', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LineGrasp', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'ManipulationStats', 'Mesh', 'MeshDistanceField', 'MeshSegment', 'MeshSegmentation', 'MinimalGrippersResult', 'MotionResult', 'MotionStats', 'NodeLoad', 'ObjectPathEvaluator', 'ObjectPathProblem', 'ObjectPathResult', 'ObjectRegions', 'ObjectSegmentation', 'Obstruction', 'OccupancyMap', 'OccupancyReport', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'PairwiseWeights', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedMesh', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'ProbabilisticSdf', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotMotion', 'RobotSource', 'ScrewThread', 'SdfHits', 'SearchTree', 'SegmentRequirement', 'SegmentedObject', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'SupportedFrame', 'SupportingPlane', 'ToolRegion', 'TourResult', 'Tray', 'Voxels', 'WholeBodyTrajectory', 'World', 'beam_frame', 'cache_folder', 'camera_view_objective', 'centric_grasps', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'copper', 'cover_from_intersections', 'default_grasp_search', 'derivative_free_solver_names', 'drive_arc', 'eigengrasp_hand', 'evaluate_graspability', 'find_package', 'finger_length_range', 'fit_cuboids', 'fit_primitives', 'flat_contact', 'follow_object_path', 'grasp_holding', 'grasp_search_names', 'graspability_map', 'hand_masks', 'inscribed_circle', 'jaw_grasps', 'joint_limit_objective', 'joint_velocity', 'line_contact', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimal_grippers', 'minimize_derivative_free', 'nlp_solver_names', 'optimised_order', 'optimize_grasp', 'paired_order', 'pairwise_weights', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stop_picks', 'plan_stops_exact', 'plan_straight_line', 'planar_facets', 'planner_names', 'platform_velocity', 'population_search_names', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'preferred_grippers', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'rectangular_section', 'render_depth', 'resting_poses', 'robust_intersections', 'round_section', 'route_lengths', 'run_policy', 'sample_grasps', 'segment_depth_image', 'segment_mesh', 'segment_objects', 'self_distance_objective', 'shape_diameters', 'share_headings', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'soft_finger_torque', 'solve_set_cover', 'synthesize_grasps', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
+__all__: list[str] = ['AssemblyGrasp', 'AssemblyOperation', 'BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'BeamExtreme', 'BeamFrame', 'BeamMaterial', 'BeamMember', 'BeamSection', 'BeamState', 'BeamSupport', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactArea', 'ContactPairProvenance', 'ContactPatch', 'CuboidFit', 'Cylinder', 'DepthCamera', 'DepthImage', 'DepthNoise', 'DerivativeFreeResult', 'DistanceField', 'DistanceResult', 'DrawnSuccess', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'Facet', 'FeasibleGrasp', 'FingerGrip', 'FingerLengthRange', 'FittedCuboid', 'FittedPrimitive', 'Grasp', 'GraspHolding', 'GraspOptimum', 'GraspRating', 'GraspReport', 'GraspSuccess', 'GraspSynthesis', 'GraspWidth', 'Graspability', 'GridDistanceField', 'Gripper', 'GripperActuator', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'IntegrationReport', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LineGrasp', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'ManipulationStats', 'Mesh', 'MeshDistanceField', 'MeshSegment', 'MeshSegmentation', 'MinimalGrippersResult', 'MotionResult', 'MotionStats', 'NlpResult', 'NodeLoad', 'NonlinearProblem', 'ObjectPathEvaluator', 'ObjectPathProblem', 'ObjectPathResult', 'ObjectRegions', 'ObjectSegmentation', 'Obstruction', 'OccupancyMap', 'OccupancyReport', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'PairwiseWeights', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedMesh', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'ProbabilisticSdf', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotMotion', 'RobotSource', 'ScrewThread', 'SdfHits', 'SearchTree', 'SegmentRequirement', 'SegmentedObject', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'SupportedFrame', 'SupportingPlane', 'ToolRegion', 'TourResult', 'Tray', 'Voxels', 'WholeBodyProgram', 'WholeBodyTrajectory', 'World', 'beam_frame', 'cache_folder', 'camera_view_objective', 'centric_grasps', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'copper', 'cover_from_intersections', 'default_grasp_search', 'derivative_free_solver_names', 'drive_arc', 'drive_by_program', 'eigengrasp_hand', 'evaluate_graspability', 'find_package', 'finger_length_range', 'fit_cuboids', 'fit_primitives', 'flat_contact', 'follow_object_path', 'grasp_holding', 'grasp_search_names', 'graspability_map', 'hand_masks', 'inscribed_circle', 'jaw_grasps', 'joint_limit_objective', 'joint_velocity', 'line_contact', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimal_grippers', 'minimize_derivative_free', 'nlp_solver_names', 'optimised_order', 'optimize_grasp', 'paired_order', 'pairwise_weights', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stop_picks', 'plan_stops_exact', 'plan_straight_line', 'planar_facets', 'planner_names', 'platform_velocity', 'population_search_names', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'preferred_grippers', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'rectangular_section', 'render_depth', 'resting_poses', 'robust_intersections', 'round_section', 'route_lengths', 'run_policy', 'sample_grasps', 'segment_depth_image', 'segment_mesh', 'segment_objects', 'self_distance_objective', 'shape_diameters', 'share_headings', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'soft_finger_torque', 'solve_nonlinear', 'solve_set_cover', 'synthesize_grasps', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
 class Error(Exception):
     """
     Base of all errors of mmgrasp.
@@ -3832,6 +3832,170 @@ class DriveByResult:
         Each kind of constraint: value (0 when kept), tolerance, unit, time [s], waypoint, what, kept; measured on a roll-out ten times
         finer than the waypoints.
         """
+class NonlinearProblem:
+    """
+    min f(x) for lower <= x <= upper and lower <= c(x) <= upper, twice differentiable, on sparse matrices. Derive from it and
+    give its methods; with a `base`, e.g. the problem of a plan, those that are left out are the base's:
+    
+        class Rosenbrock(mg.optim.NonlinearProblem):
+            def variable_bounds(self): return np.full(2, -np.inf), np.full(2, np.inf)
+            def constraint_bounds(self): return np.zeros(0), np.zeros(0)
+            def objective(self, x): return 100 * (x[1] - x[0] ** 2) ** 2 + (1 - x[0]) ** 2
+            def gradient(self, x):
+                return [400 * x[0] * (x[0] ** 2 - x[1]) - 2 * (1 - x[0]), 200 * (x[1] - x[0] ** 2)]
+            def constraints(self, x): return []
+            def jacobian_pattern(self): return [], []
+            def jacobian(self, x): return []
+            def hessian_pattern(self): return [0, 1, 1], [0, 0, 1]
+            def hessian(self, x, factor, multipliers):
+                return factor * np.array([1200 * x[0] ** 2 - 400 * x[1] + 2, -400 * x[0], 200])
+        print(mg.optim.solve_nonlinear(Rosenbrock(), [-1.2, 1]).x)
+    
+    Not thread-safe: one solve at a time for each problem.
+    """
+    def __init__(self, base: NonlinearProblem | None = None) -> None:
+        """
+        Of one's own, on top of another problem or on none.
+        """
+    def constraint_bounds(self) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+        """
+        Lower and upper (m,); equal for an equation.
+        """
+    def constraint_name(self, index: int) -> str:
+        """
+        What messages call a constraint.
+        """
+    def constraints(self, x: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        c(x), (m,)
+        """
+    def gradient(self, x: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n,) of f
+        """
+    def hessian(self, x: numpy.typing.ArrayLike, factor: float, multipliers: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Values of the lower triangle of factor * f'' + sum_i multipliers[i] * c_i''.
+        """
+    def hessian_pattern(self) -> tuple[numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.int32]]:
+        """
+        Rows and columns (row >= column) of the Hessian's entries, in the order of `hessian`; entries that repeat add up.
+        """
+    def jacobian(self, x: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Values of the Jacobian's entries.
+        """
+    def jacobian_pattern(self) -> tuple[numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.int32]]:
+        """
+        Rows (constraints) and columns (variables) of the Jacobian's entries, in the order of `jacobian`; entries that repeat add up.
+        """
+    def objective(self, x: numpy.typing.ArrayLike) -> float:
+        """
+        f(x)
+        """
+    def variable_bounds(self) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+        """
+        Lower and upper (n,); infinite where there is none, equal where a value is prescribed.
+        """
+    def variable_name(self, index: int) -> str:
+        """
+        What messages call a variable.
+        """
+    @property
+    def base(self) -> NonlinearProblem | None:
+        """
+        The problem beneath, or None.
+        """
+class NlpResult:
+    """
+    Where solve_nonlinear ended.
+    """
+    def __repr__(self) -> str:
+        ...
+    def to_dict(self) -> dict[str, typing.Any]:
+        """
+        As a dict of plain numbers, strings and lists, e.g. for JSON.
+        """
+    @property
+    def iterations(self) -> int:
+        """
+        Iterations of Ipopt, or evaluations of SLSQP.
+        """
+    @property
+    def message(self) -> str:
+        """
+        How the solver itself put it.
+        """
+    @property
+    def objective(self) -> float:
+        """
+        f(x)
+        """
+    @property
+    def outcome(self) -> Outcome:
+        """
+        `solved`: locally optimal, every constraint kept; `approximate`: constraints kept, optimality not shown;
+        `not_found`: constraints are broken; `timeout`: iterations or clock.
+        """
+    @property
+    def seconds(self) -> float:
+        """
+        Wall-clock time [s].
+        """
+    @property
+    def violation(self) -> float:
+        """
+        How far the worst variable or constraint is outside its bounds; 0 where all hold.
+        """
+    @property
+    def x(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        The answer or, not solved, the best iterate: the least violated, then the cheapest.
+        """
+class WholeBodyProgram:
+    """
+    The nonlinear problem of a drive-by: fastest motion through the tasks, nothing in the way (P1 4.1 to 4.9). Variables are
+    positions and drive velocities of the waypoints, drive accelerations between them and a time step for each segment.
+    """
+    def trajectory(self, x: numpy.typing.ArrayLike) -> WholeBodyTrajectory:
+        """
+        The motion that (n,) numbers stand for.
+        """
+    def violations(self, x: numpy.typing.ArrayLike) -> dict[str, mmgrasp.records.ViolationRow]:
+        """
+        As DriveByResult.violations: what that motion breaks on a roll-out ten times finer than the waypoints, but for constraints
+        of one's own.
+        """
+    @property
+    def accelerations(self) -> numpy.typing.NDArray[numpy.int32]:
+        """
+        (intervals, drives): which are drive accelerations.
+        """
+    @property
+    def guess(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n,): where plan_drive_by begins.
+        """
+    @property
+    def positions(self) -> numpy.typing.NDArray[numpy.int32]:
+        """
+        (waypoints, columns): which variables are configurations.
+        """
+    @property
+    def problem(self) -> NonlinearProblem:
+        """
+        To solve, or the base of a problem of one's own.
+        """
+    @property
+    def steps(self) -> numpy.typing.NDArray[numpy.int32]:
+        """
+        (segments,): which are time steps.
+        """
+    @property
+    def velocities(self) -> numpy.typing.NDArray[numpy.int32]:
+        """
+        (waypoints, drives): which are drive velocities.
+        """
 class RobotMotion:
     """
     What a robot carries out: arm, base and gripper on one clock. Made of a trajectory, a drive (`of_drive`) or a motion in
@@ -6363,6 +6527,11 @@ def drive_arc(pose: numpy.typing.ArrayLike, platform_velocity: numpy.typing.Arra
     """
     Base pose (x, y, theta) after `time` [s] at a constant platform velocity (v_x, v_y, omega): the exact arc.
     """
+def drive_by_program(group: JointGroup, *, start: numpy.typing.ArrayLike, tasks: collections.abc.Sequence[DriveByTask], goal: numpy.typing.ArrayLike, waypoints: int = 35, smoothing: float = 0.01) -> WholeBodyProgram | None:
+    """
+    The nonlinear problem from which plan_drive_by begins, with its guess, obstacles left out; None when a task is out of reach.
+    `smoothing` weighs the mean square of accelerations over their limits [s].
+    """
 def eigengrasp_hand(robot: Robot, tool_link: str, groups: collections.abc.Sequence[tuple[str, collections.abc.Sequence[str]]], *, open: numpy.typing.ArrayLike, closed: numpy.typing.ArrayLike, approach: numpy.typing.ArrayLike = (0, 0, 1), name: str = 'type') -> Hand:
     """
     A robot hand set up for one type of grasp (P3 4.6.1, Algorithm 3): `groups` are (name, joints) pairs, `open` and `closed`
@@ -7066,6 +7235,19 @@ def singularity_objective(group: JointGroup, threshold: float, weight: float = 1
 def soft_finger_torque(normal: float, friction: float, torsion_radius: float, tangential: float = 0.0) -> float:
     """
     The torque about its normal that a soft contact holds beside a tangential force [N m], by the ellipsoid that stands for the limit surface (Howe and Cutkosky 1996). Forces [N], torsion_radius [m].
+    """
+def solve_nonlinear(problem: NonlinearProblem, guess: numpy.typing.ArrayLike, *, solver: str = 'ipopt', progress: collections.abc.Callable[[str, float], typing.Any] | None = None, tolerance: float = 1e-07, constraint_tolerance: float = 1e-08, max_iterations: int = 500, time_limit: float = 30.0, barrier: float = 0.0, warm_start: float = 0.0) -> NlpResult:
+    """
+    A local optimum of a NonlinearProblem near `guess` (n,), which may lie outside the bounds. `solver`: a name of nlp_solver_names.
+    What a method of the problem raises ends the solve and is raised here.
+    
+    Keyword options:
+        tolerance: float = 1e-07  # relative optimality
+        constraint_tolerance: float = 1e-08  # largest violation of a solved problem
+        max_iterations: int = 500  # budget in iterations (ipopt) or evaluations (slsqp)
+        time_limit: float = 30.0  # wall-clock cap [s]
+        barrier: float = 0.0  # ipopt: the first barrier parameter, lowered steadily; 0: chosen in each step
+        warm_start: float = 0.0  # ipopt: 0 starts afresh; else the guess is trusted and the barrier parameter begins with this
     """
 def solve_set_cover(elements: int, sets: collections.abc.Sequence[collections.abc.Sequence[int]], costs: collections.abc.Sequence[float] = [], *, time_limit: float = 60.0, progress: collections.abc.Callable[[str, float], typing.Any] | None = None) -> SetCoverResult:
     """

@@ -56,11 +56,15 @@ class MMGRASP_EXPORT NlpSolver {
                         const Monitor& monitor) const = 0;
 };
 
-/// "ipopt": interior points on sparse matrices with exact Hessians; its linear solver is not re-entrant, so that calls
-/// from several threads wait for each other. "slsqp": sequential least squares on dense matrices (NLopt's, as P1 4.2
-/// used it), for a few hundred variables.
+/// "ipopt": interior points on sparse matrices with exact Hessians; calls from several threads run side by side.
+/// "slsqp": sequential least squares on dense matrices (NLopt's, as P1 4.2 used it), for a few hundred variables.
 MMGRASP_EXPORT std::vector<std::string> nlp_solver_names();
 /// Throws InvalidInput listing the known names on a wrong one.
 MMGRASP_EXPORT std::unique_ptr<NlpSolver> make_nlp_solver(const std::string& name);
+
+/// A local optimum near the guess by the solver of that name.
+MMGRASP_EXPORT NlpResult solve_nonlinear(const std::string& solver, NonlinearProblem& problem,
+                                         const Eigen::VectorXd& guess, const NlpOptions& options = {},
+                                         const Monitor& monitor = {});
 
 }  // namespace mmgrasp

@@ -14,6 +14,7 @@
 #include "mmgrasp/robot/joint_group.hpp"
 #include "mmgrasp/robot/robot_motion.hpp"
 #include "mmgrasp/trajopt/optimize_whole_body.hpp"
+#include "mmgrasp/trajopt/whole_body_program.hpp"
 
 namespace mmgrasp {
 
@@ -153,6 +154,12 @@ struct MMGRASP_EXPORT DriveByStart {
   WholeBodyGuess guess;
 };
 MMGRASP_EXPORT std::optional<DriveByStart> first_drive_by_guess(const JointGroup& group, const Eigen::VectorXd& start,
+                                                                const std::vector<DriveByTask>& tasks,
+                                                                const DriveByGoal& goal,
+                                                                const DriveByOptions& options = {});
+
+/// The same as a nonlinear problem, for solvers and costs of one's own.
+MMGRASP_EXPORT std::optional<WholeBodyProgram> drive_by_program(const JointGroup& group, const Eigen::VectorXd& start,
                                                                 const std::vector<DriveByTask>& tasks,
                                                                 const DriveByGoal& goal,
                                                                 const DriveByOptions& options = {});

@@ -1,6 +1,4 @@
 // Ipopt behind the interface of nonlinear solvers.
-#include <dlfcn.h>
-
 #include <IpIpoptApplication.hpp>
 #include <IpIpoptCalculatedQuantities.hpp>
 #include <IpIpoptData.hpp>
@@ -8,12 +6,9 @@
 #include <IpTNLP.hpp>
 #include <IpTNLPAdapter.hpp>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <cstdlib>
-#include <mutex>
-#include <thread>
 
+#include "optim/nlp/ipopt_factorisation.hpp"
 #include "optim/nlp/nlp_backends.hpp"
 
 namespace mmgrasp::detail {
@@ -26,26 +21,6 @@ using ConstMap = Eigen::Map<const VectorXd>;
 using Map = Eigen::Map<VectorXd>;
 
 constexpr double kInfinity = 1e19;  // Ipopt's
-
-/// MUMPS keeps state in module variables of Fortran.
-std::mutex& mumps() {
-  static std::mutex mutex;
-  return mutex;
-}
-
-/// MUMPS may order by Scotch, a third quicker on chains of waypoints than by what it chooses itself. Scotch draws
-/// random numbers of the process and shares its work among threads: with one thread and numbers that begin anew the
-/// same problem is solved in the same way. False: not there. Only while MUMPS is locked.
-bool restart_scotch() {
-  static const auto restart = [] {
-    const auto function = reinterpret_cast<void (*)()>(dlsym(RTLD_DEFAULT, "SCOTCH_randomReset"));
-    if (function) setenv("SCOTCH_PTHREAD_NUMBER", "1", 1);
-    return function;
-  }();
-  if (restart) restart();
-  return restart != nullptr;
-}
-constexpr int kScotch = 3;  // MUMPS' ICNTL(7)
 
 /// A NonlinearProblem as Ipopt asks for it; notes the best iterate and ends the solve when its time is up.
 class Adapter : public Ipopt::TNLP {
@@ -210,7 +185,7 @@ const char* said(Ipopt::ApplicationReturnStatus status) {
   }
 }
 
-/// Interior points. Only one solve runs at a time, because MUMPS keeps process-wide state.
+/// Interior points.
 class IpoptSolver : public NlpSolver {
  public:
   std::string name() const override { return "ipopt"; }
@@ -221,15 +196,7 @@ class IpoptSolver : public NlpSolver {
     SolveClock clock(options.time_limit, monitor);
     BestIterate best(options.constraint_tolerance);
     Ipopt::SmartPtr<Adapter> adapter = new Adapter(problem, guess, options, clock, best);
-    Ipopt::ApplicationReturnStatus status = Ipopt::Internal_Error;
-    {
-      std::unique_lock lock(mumps(), std::try_to_lock);
-      while (!lock.owns_lock() && !clock.over()) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        lock.try_lock();
-      }
-      if (lock.owns_lock()) status = optimize(*adapter, options);
-    }
+    const Ipopt::ApplicationReturnStatus status = optimize(*adapter, options);
     if (clock.error) std::rethrow_exception(clock.error);
     const bool converged = status == Ipopt::Solve_Succeeded || status == Ipopt::Solved_To_Acceptable_Level;
     NlpResult result = judged(problem, adapter->last, converged, status == Ipopt::Maximum_Iterations_Exceeded, best,
@@ -251,15 +218,15 @@ class IpoptSolver : public NlpSolver {
     settings->SetNumericValue("acceptable_constr_viol_tol", 0.5 * options.constraint_tolerance);
     settings->SetIntegerValue("acceptable_iter", 5);
     settings->SetNumericValue("bound_relax_factor", 0.0);
-    settings->SetStringValue("linear_solver", "mumps");
+    give_ipopt_sparse_ldlt();
+    settings->SetStringValue("linear_solver", "ma97");
+    settings->SetStringValue("ma97_scaling", "none");
+    settings->SetStringValue("linear_system_scaling", "none");
     settings->SetStringValue("mu_strategy", "adaptive");
     settings->SetNumericValue("mu_min", std::min(1e-6, 0.01 * options.tolerance));
     settings->SetStringValue("honor_original_bounds", "yes");
     // Ipopt scales the problem itself and refines where residuals are large: twice is only slower.
-    settings->SetIntegerValue("mumps_scaling", 0);
-    settings->SetIntegerValue("mumps_permuting_scaling", 0);
     settings->SetIntegerValue("min_refinement_steps", 0);
-    if (restart_scotch()) settings->SetIntegerValue("mumps_pivot_order", kScotch);
     if (options.barrier > 0) {
       settings->SetStringValue("mu_strategy", "monotone");
       settings->SetNumericValue("mu_init", options.barrier);

@@ -33,8 +33,8 @@ void check_pattern(const SparsePattern& pattern, Eigen::Index rows, Eigen::Index
           "must have as many columns as rows");
   for (std::size_t i = 0; i < pattern.rows.size(); ++i) {
     const int row = pattern.rows[i], column = pattern.columns[i];
-    require(row >= 0 && row < rows && column >= 0 && column < columns && (!lower || row >= column),
-            std::string(field) + "[" + std::to_string(i) + "]",
+    if (row >= 0 && row < rows && column >= 0 && column < columns && (!lower || row >= column)) continue;
+    require(false, std::string(field) + "[" + std::to_string(i) + "]",
             "(" + std::to_string(row) + ", " + std::to_string(column) + ")",
             lower ? "must lie in the lower triangle" : "must lie in the matrix");
   }
@@ -64,8 +64,8 @@ NlpResult NlpSolver::solve(NonlinearProblem& problem, const Eigen::VectorXd& gue
   require(guess.size() == n, "guess", static_cast<double>(guess.size()),
           "must have " + std::to_string(n) + " entries, one per variable");
   for (Eigen::Index i = 0; i < n; ++i) {
-    require(std::isfinite(guess[i]), "guess of " + problem.variable_name(static_cast<int>(i)), guess[i],
-            "must be finite");
+    if (std::isfinite(guess[i])) continue;
+    require(false, "guess of " + problem.variable_name(static_cast<int>(i)), guess[i], "must be finite");
   }
   check_pattern(problem.jacobian_pattern(), m, n, false, "jacobian_pattern");
   check_pattern(problem.hessian_pattern(), n, n, true, "hessian_pattern");
@@ -86,6 +86,11 @@ std::unique_ptr<NlpSolver> make_nlp_solver(const std::string& name) {
   }
   require(false, "solver", "'" + name + "'", "must be one of " + known);
   return nullptr;
+}
+
+NlpResult solve_nonlinear(const std::string& solver, NonlinearProblem& problem, const Eigen::VectorXd& guess,
+                          const NlpOptions& options, const Monitor& monitor) {
+  return make_nlp_solver(solver)->solve(problem, guess, options, monitor);
 }
 
 }  // namespace mmgrasp

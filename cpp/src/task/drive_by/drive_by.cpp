@@ -257,4 +257,12 @@ std::optional<DriveByStart> first_drive_by_guess(const JointGroup& group, const 
   return DriveBy(group, nothing, start, tasks, goal, blind, silent).first_guess();
 }
 
+std::optional<WholeBodyProgram> drive_by_program(const JointGroup& group, const VectorXd& start,
+                                                 const std::vector<DriveByTask>& tasks, const DriveByGoal& goal,
+                                                 const DriveByOptions& options) {
+  const std::optional<DriveByStart> first = first_drive_by_guess(group, start, tasks, goal, options);
+  if (!first) return {};
+  return WholeBodyProgram(first->problem, first->guess, options.trajectory.smoothing);
+}
+
 }  // namespace mmgrasp

@@ -32,8 +32,15 @@ def covering(shapes: list[Any], points: np.ndarray) -> np.ndarray:
     return count
 
 
+def with_obstacle(write: Any, small: dict[str, Any], entry: dict[str, Any], points: np.ndarray) -> Path:
+    """A scenario with one more obstacle, and the cloud wall.pcd beside it."""
+    path: Path = write({**small, "obstacles": [*small["obstacles"], {"name": "seen", **entry}]})
+    write_cloud(path.parent / "wall.pcd", points)
+    return path
+
+
 def obstacle(write: Any, small: dict[str, Any], **entry: Any) -> list[Any]:
-    path = write({**small, "obstacles": [*small["obstacles"], {"name": "seen", **entry}]})
+    path = with_obstacle(write, small, entry, wall_of_points())
     return next(o.shapes for o in load_scenario(path).obstacles if o.name == "seen")
 
 
@@ -47,8 +54,6 @@ def wall_of_points() -> np.ndarray:
 
 def test_a_cloud_is_the_cells_that_hold_a_point(small: dict[str, Any], write: Any) -> None:
     points = wall_of_points()
-    folder = write(small).parent
-    write_cloud(folder / "wall.pcd", points)
     shapes = obstacle(write, small, cloud="wall.pcd", cell=CELL)
     taken = {tuple(np.floor(p / CELL).astype(int)) for p in points[:-1]}
     assert len(shapes) < len(taken) / 4
@@ -61,8 +66,6 @@ def test_a_cloud_is_the_cells_that_hold_a_point(small: dict[str, Any], write: An
 
 
 def test_within_cuts_and_keeps_cells_that_reach_in(small: dict[str, Any], write: Any) -> None:
-    folder = write(small).parent
-    write_cloud(folder / "wall.pcd", wall_of_points())
     shapes = obstacle(write, small, cloud="wall.pcd", cell=CELL, within=[[4.0, 3.55, 0.0], [5.0, 4.0, 0.6]])
     bounds = np.array([s.bounds for s in shapes])
     np.testing.assert_allclose(bounds[:, 0].min(axis=0), [4.5, 3.5, 0.1])
@@ -89,14 +92,11 @@ def test_an_octree_is_its_occupied_leaves(small: dict[str, Any], write: Any, dat
 
 
 def test_a_plan_among_cells_holds_without_the_file(small: dict[str, Any], write: Any) -> None:
-    folder = write(small).parent
-    write_cloud(folder / "wall.pcd", wall_of_points())
-    entry = {"name": "wall", "cloud": "wall.pcd", "cell": CELL}
-    path = write({**small, "obstacles": [*small["obstacles"], entry]})
+    path = with_obstacle(write, small, {"cloud": "wall.pcd", "cell": CELL}, wall_of_points())
     plan = mg.plan_part_supply(path)
     assert plan.outcome == mg.Outcome.solved
     assert mg.verify_plan(plan.to_dict(), scenario=path, samples=100).ok
-    write_cloud(folder / "wall.pcd", wall_of_points()[100:])
+    write_cloud(path.parent / "wall.pcd", wall_of_points()[300:])
     assert mg.verify_plan(plan.to_dict(), samples=100).ok
     changed = mg.verify_plan(plan.to_dict(), scenario=path, samples=100)
     assert "scenario-changed" in {fault.code for fault in changed.faults}
@@ -122,10 +122,8 @@ def test_a_plan_among_cells_holds_without_the_file(small: dict[str, Any], write:
     ],
 )
 def test_bad_entries_are_refused(small: dict[str, Any], write: Any, entry: dict[str, Any], words: str) -> None:
-    folder = write(small).parent
-    write_cloud(folder / "wall.pcd", wall_of_points())
-    write_cloud(folder / "empty.pcd", np.full((2, 3), np.nan))
-    path = write({**small, "obstacles": [*small["obstacles"], {"name": "seen", **entry}]})
+    path = with_obstacle(write, small, entry, wall_of_points())
+    write_cloud(path.parent / "empty.pcd", np.full((2, 3), np.nan))
     with pytest.raises(mg.InvalidInput, match=words) as refused:
         load_scenario(path)
     assert path.name in str(refused.value)

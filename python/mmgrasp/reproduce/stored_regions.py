@@ -20,7 +20,7 @@ from .._progress import Progress
 from .entry import Context, Result
 from .setup import ChecksAtBase, Row, database, reach_samples
 
-REDUNDANT_VALUES = 96  # of the seventh joint, for exact inverse kinematics: four times the default
+REDUNDANT_VALUES = (12, 96)  # of the seventh joint, for exact inverse kinematics; the many where the few find nothing free
 ROUND = 8  # configurations of a pose that are checked together before the next ones are looked at
 
 
@@ -75,7 +75,7 @@ class Papers:
             "configuration reaches another pose of the voxel. 'Not exact': the share of its cells at whose middle some object has no "
             f"configuration at all that reaches the grasp and is free, in all rows {' and '.join(shares)}; 'missed': the share of the cells "
             "with such configurations that it does not find. All branches of exact inverse kinematics decide, for "
-            f"{REDUNDANT_VALUES} values of the redundant joint. Ours count when their corners are exact, too. Times of Algorithm 4 are a Python loop's."
+            f"{REDUNDANT_VALUES[-1]} values of the redundant joint. Ours count when their corners are exact, too. Times of Algorithm 4 are a Python loop's."
         )
         if len(self.found) > 1:
             missed = [sum(ours["missed"] for ours in rows) for rows in self.found]
@@ -109,7 +109,7 @@ def measure(row: Row, density: Density, tray: int | None = None) -> dict[str, An
     targets = _targets(problem.trays if tray is None else [problem.trays[tray]])
     begun = time.perf_counter()
     standing = _standing(grid, checks)
-    stored = _served(standing, targets, reach.query, checks)
+    stored = _served(standing, targets, [reach.query], checks)
     seconds = time.perf_counter() - begun
     exact = _served(standing, targets, _exact(problem.arm), checks)
     cells = _mask(grid, stored)
@@ -145,13 +145,20 @@ def _standing(grid: BaseGrid, checks: ChecksAtBase) -> np.ndarray:
 def _served(
     bases: np.ndarray,
     targets: Sequence[list[np.ndarray]],
-    configurations: Callable[[np.ndarray], np.ndarray],
+    sources: Sequence[Callable[[np.ndarray], np.ndarray]],
     checks: ChecksAtBase,
 ) -> np.ndarray:
-    """Those of the base poses (k, 3) at which every target has a grasp with a configuration free of collisions."""
+    """Those of the base poses (k, 3) at which every target has a grasp with a configuration free of collisions.
+
+    The sources of configurations for a tool pose are asked one after the other, where those before gave none that is free.
+    """
     for grasps in targets:
-        found = [np.vstack([configurations(_seen_from(base, T)) for T in grasps]) for base in bases]
-        bases = bases[_any_free(bases, found, checks)]
+        served = np.zeros(len(bases), dtype=bool)
+        for configurations in sources:
+            left = np.flatnonzero(~served)
+            found = [np.vstack([configurations(_seen_from(base, T)) for T in grasps]) for base in bases[left]]
+            served[left] = _any_free(bases[left], found, checks)
+        bases = bases[served]
     return bases
 
 
@@ -175,11 +182,11 @@ def _seen_from(base: np.ndarray, T_world_tip: np.ndarray) -> np.ndarray:
     return T
 
 
-def _exact(arm: _core.JointGroup) -> Callable[[np.ndarray], np.ndarray]:
-    def branches(T_base_tip: np.ndarray) -> np.ndarray:
-        return arm.ik_branches(T_base_tip, redundant_values=REDUNDANT_VALUES, restarts=0).solutions
+def _exact(arm: _core.JointGroup) -> list[Callable[[np.ndarray], np.ndarray]]:
+    def branches(values: int) -> Callable[[np.ndarray], np.ndarray]:
+        return lambda T_base_tip: arm.ik_branches(T_base_tip, redundant_values=values, restarts=0).solutions
 
-    return branches
+    return [branches(values) for values in REDUNDANT_VALUES]
 
 
 def _mask(grid: BaseGrid, bases: np.ndarray) -> np.ndarray:

@@ -19,8 +19,9 @@ def read_octree(node: Node) -> list[LinkShape]:
     unknown = node["unknown"].choice("occupied", "free") if "unknown" in node else "free"
     if unknown == "occupied" and within is None:
         node["unknown"].fail("needs `within`: without bounds all the world around the octree is unknown")
+    file = find_file(node["octree"])
     try:
-        octree = OccupancyMap.load(find_file(node["octree"]))
+        octree = OccupancyMap.load(file)
         if within is None:
             groups = octree.obstacle_cells(unknown="free")
         else:
@@ -33,8 +34,9 @@ def read_octree(node: Node) -> list[LinkShape]:
 def read_cloud(node: Node) -> list[LinkShape]:
     """Boxes on the cells of edge `cell` [m] that hold a point of a PCD file."""
     cell = node["cell"].number(least=1e-3, most=1) if "cell" in node else node.lacks("cell")
+    file = find_file(node["cloud"])
     try:
-        points = read_pcd(find_file(node["cloud"])).points
+        points = read_pcd(file).points
     except Error as error:
         node["cloud"].fail(str(error))
     points = points[np.isfinite(points).all(axis=1)]

@@ -15,7 +15,7 @@ namespace mmgrasp {
 
 namespace {
 
-constexpr int kMaxBoxes = 2000;  // of joint values in a proof: more prove few further pairs
+constexpr int kMaxBoxes = 10000;  // of joint values in a proof: more prove few further pairs
 
 struct BodyPair {
   int a, b;               // bodies

@@ -93,19 +93,38 @@ NeverTouch::Box NeverTouch::whole_range(const std::vector<Mover>& of_a, const st
   return box;
 }
 
-// A bound on how far a point within the sphere (world frame, at the box's middle) moves while the movers do. They move
-// one after the other, the nearest to the body first: by then the others' axes stand where they do at the middle, and
-// the point is at most as far from there as it has moved so far.
-double NeverTouch::motion(const std::vector<Mover>& movers, const Poses& links, const Eigen::Vector3d& centre,
-                          double radius, const Eigen::VectorXd& half, Eigen::VectorXd& of_value) const {
+NeverTouch::Extent::Extent(const BodyShape& shape, const Pose& link)
+    : centre(link * shape.sphere_centre), radius(shape.solid->sphere_radius) {
+  const Rigid T_world_shape = Rigid(link) * shape.in_link;
+  // A rounded body comes nowhere that its core does not bring it: a sphere that turns about itself does not move.
+  const double rounding = shape.solid->kind == SolidKind::convex ? shape.solid->core.radius : 0;
+  const Eigen::Vector3d half =
+      (shape.solid->box_half.array() - rounding).max(0).matrix() + Eigen::Vector3d::Constant(shape.solid->margin);
+  for (int k = 0; k < 8; ++k) {
+    const Eigen::Vector3d sign(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
+    corners[k] = T_world_shape * (shape.solid->box_centre + sign.cwiseProduct(half));
+  }
+}
+
+double NeverTouch::Extent::from_axis(const Eigen::Vector3d& origin, const Eigen::Vector3d& axis) const {
+  const auto squared = [&](const Eigen::Vector3d& point) { return axis.cross(point - origin).squaredNorm(); };
+  double of_box = 0;
+  for (const Eigen::Vector3d& corner : corners) of_box = std::max(of_box, squared(corner));
+  return std::min(std::sqrt(of_box), std::sqrt(squared(centre)) + radius);
+}
+
+// A bound on how far a point of the shape moves while the movers do. They move one after the other, the nearest to the
+// body first: by then the others' axes stand where they do at the middle, and the point is at most as far from there as
+// it has moved so far.
+double NeverTouch::motion(const std::vector<Mover>& movers, const Poses& links, const Extent& extent,
+                          const Eigen::VectorXd& half, Eigen::VectorXd& of_value) const {
   double moved = 0;
   for (const Mover& mover : movers) {
     const double by = mover.factor * half[mover.value];
     double step = by;
     if (!mover.slides) {
       const Pose& frame = links[mover.link];
-      const Eigen::Vector3d axis = frame.linear() * mover.axis, from = centre - frame.translation();
-      const double lever = (from - axis.dot(from) * axis).norm() + radius + moved;
+      const double lever = extent.from_axis(frame.translation(), frame.linear() * mover.axis) + moved;
       step = 2 * lever * std::sin(std::min(by, kPi) / 2);  // the chord
     }
     moved += step;
@@ -123,13 +142,12 @@ NeverTouch::Verdict NeverTouch::judge(const Box& box, int body_a, int body_b, co
   for (const int i : shapes_of_[body_a]) {
     for (const int j : shapes_of_[body_b]) {
       const BodyShape &a = snapshot_.shapes[i], &b = snapshot_.shapes[j];
-      const Eigen::Vector3d centre_a = links[a.link] * a.sphere_centre, centre_b = links[b.link] * b.sphere_centre;
-      const double radius_a = a.solid->sphere_radius, radius_b = b.solid->sphere_radius;
+      const Extent at_a(a, links[a.link]), at_b(b, links[b.link]);
       of_value.setZero();
-      const double moved = motion(of_a, links, centre_a, radius_a, box.half, of_value) +
-                           motion(of_b, links, centre_b, radius_b, box.half, of_value);
-      const double apart = (centre_a - centre_b).norm(), needed = moved + kLeastClearance;
-      double clearance = apart - radius_a - radius_b;
+      const double moved =
+          motion(of_a, links, at_a, box.half, of_value) + motion(of_b, links, at_b, box.half, of_value);
+      const double apart = (at_a.centre - at_b.centre).norm(), needed = moved + kLeastClearance;
+      double clearance = apart - at_a.radius - at_b.radius;
       if (clearance > needed) continue;
       // No body is nearer to the other one than spheres are, nor farther away than their middles: a larger motion is
       // beyond what the exact distance could prove.

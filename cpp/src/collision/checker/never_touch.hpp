@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "collision/checker/bodies.hpp"
@@ -25,6 +26,16 @@ class NeverTouch {
     Eigen::Vector3d axis;  ///< In the child's frame.
     bool slides = false;
   };
+  /// Where a shape is, in the world: a sphere around it, and a box around the points that its rounding surrounds.
+  struct Extent {
+    Extent(const BodyShape& shape, const Pose& link);
+    /// How far from an axis the points are that move the shape.
+    double from_axis(const Eigen::Vector3d& origin, const Eigen::Vector3d& axis) const;
+
+    Eigen::Vector3d centre;
+    double radius;
+    std::array<Eigen::Vector3d, 8> corners;
+  };
   struct Box {
     Eigen::VectorXd middle, half;  ///< Of the whole robot's values; half is zero where the value does not matter.
     double clearance = 0;          ///< At the middle of the box that was halved into this one.
@@ -38,8 +49,8 @@ class NeverTouch {
   bool movers_between(int link_a, int link_b, std::vector<Mover>& of_a, std::vector<Mover>& of_b) const;
   bool movers_up_to(int link, int top, std::vector<Mover>& out) const;
   Box whole_range(const std::vector<Mover>& of_a, const std::vector<Mover>& of_b) const;
-  double motion(const std::vector<Mover>& movers, const Poses& links, const Eigen::Vector3d& centre, double radius,
-                const Eigen::VectorXd& half, Eigen::VectorXd& of_value) const;
+  double motion(const std::vector<Mover>& movers, const Poses& links, const Extent& extent, const Eigen::VectorXd& half,
+                Eigen::VectorXd& of_value) const;
   Verdict judge(const Box& box, int body_a, int body_b, const std::vector<Mover>& of_a,
                 const std::vector<Mover>& of_b) const;
 

@@ -165,9 +165,8 @@ def test_objects_fill_the_corners(objects: tuple[int, int]) -> None:
     row = Row(objects=objects)
     places = {tuple(place) for place in row.object_places().round(9)}
     assert len(places) == objects[0] * objects[1]
-    x, y = 0.15 - row.margin, 0.20 - row.margin
-    assert {(sx * x, sy * y) for sx in (-1, 1) for sy in (-1, 1)} <= places
-    assert np.abs(list(places)).max(axis=0) == pytest.approx([x, y])
+    assert {(sx * 0.13, sy * 0.18) for sx in (-1, 1) for sy in (-1, 1)} <= places
+    assert np.abs(list(places)).max(axis=0) == pytest.approx([0.13, 0.18])
 
 
 def test_the_json_of_the_command_is_the_contract(capfd: pytest.CaptureFixture[str]) -> None:

@@ -16,6 +16,7 @@ const std::vector<OptionField<DisabledPairsOptions>>& pair_fields() {
   static const std::vector<OptionField<O>> fields{
       option<O>("samples", &O::samples, "random configurations"),
       option<O>("always_fraction", &O::always_fraction, "a pair in collision at least this often is called always"),
+      option<O>("trust_samples", &O::trust_samples, "call pairs that touch in no sample never, without a proof"),
       option<O>("seed", &O::seed, "same seed, same pairs"), option<O>("threads", &O::threads, "0: all")};
   return fields;
 }
@@ -69,7 +70,7 @@ void write_pairs(const std::filesystem::path& file, const Robot& before, const R
 
 Robot sampled(const Robot& robot, const Progress& progress) {
   LongCall call(progress);  // first: a wrong argument is told even when nothing is left to do
-  const std::filesystem::path file = cache_folder() / ("pairs-" + robot.hash() + ".txt");
+  const std::filesystem::path file = cache_folder() / ("proven-pairs-" + robot.hash() + ".txt");
   if (auto pairs = read_pairs(file, robot); !pairs.empty()) return robot.with_disabled_pairs(std::move(pairs));
   Robot out = call.run([&](const Monitor& monitor) { return compute_disabled_pairs(robot, {}, monitor); });
   write_pairs(file, robot, out);

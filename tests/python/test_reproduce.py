@@ -155,9 +155,18 @@ def test_setups_are_the_papers() -> None:
     assert problem.arm.size == 7
     places = np.array([part.T_world_part[:2, 3] for part in problem.trays[0].parts])
     gaps = [np.diff(np.unique(places[:, k].round(9))) for k in (0, 1)]
-    np.testing.assert_allclose(gaps[0], 0.30 / 9)
-    np.testing.assert_allclose(gaps[1], 0.40 / 12)
-    assert np.abs(places).max(axis=0) == pytest.approx([0.15 - 0.30 / 18, 0.20 - 0.40 / 24])
+    np.testing.assert_allclose(gaps[0], (0.30 - 2 * row.margin) / 8)
+    np.testing.assert_allclose(gaps[1], (0.40 - 2 * row.margin) / 11)
+
+
+@pytest.mark.parametrize("objects", [(2, 2), (3, 4), (6, 8), (21, 28)])
+def test_objects_fill_the_corners(objects: tuple[int, int]) -> None:
+    """P1 3.6.1: with four objects and more the four corners of the tray are filled, whatever lies between them."""
+    row = Row(objects=objects)
+    places = {tuple(place) for place in row.object_places().round(9)}
+    assert len(places) == objects[0] * objects[1]
+    assert {(sx * 0.13, sy * 0.18) for sx in (-1, 1) for sy in (-1, 1)} <= places
+    assert np.abs(list(places)).max(axis=0) == pytest.approx([0.13, 0.18])
 
 
 def test_the_json_of_the_command_is_the_contract(capfd: pytest.CaptureFixture[str]) -> None:

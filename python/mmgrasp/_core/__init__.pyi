@@ -6497,13 +6497,14 @@ def compute_base_regions(problem: PartSupplyProblem, database: ReachDatabase, gr
     """
     P1 Algorithm 2 with exact inverse kinematics: one region for each tray with target parts.
     """
-def compute_disabled_pairs(robot: Robot, *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, samples: int = 10000, always_fraction: float = 0.95, seed: int = 1, threads: int = 0) -> Robot:
+def compute_disabled_pairs(robot: Robot, *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, samples: int = 10000, always_fraction: float = 0.95, trust_samples: bool = False, seed: int = 1, threads: int = 0) -> Robot:
     """
     The robot with the link pairs that always or never touch found by sampling; those of an SRDF are kept.
     
     Keyword options:
         samples: int = 10000  # random configurations
         always_fraction: float = 0.95  # a pair in collision at least this often is called always
+        trust_samples: bool = False  # call pairs that touch in no sample never, without a proof
         seed: int = 1  # same seed, same pairs
         threads: int = 0  # 0: all
     """

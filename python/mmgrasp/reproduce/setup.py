@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from .. import _core
-from .._core import BaseGrid, Box, Grasp, LinkShape, Part, PartSupplyProblem, ReachDatabase, Tray, World
+from .._core import BaseGrid, Box, CollisionChecker, Grasp, LinkShape, Part, PartSupplyProblem, ReachDatabase, Tray, World
 from .._files import shipped
 from .._progress import Progress
 from ..documents.reading import read_yaml
@@ -25,6 +25,7 @@ from ..scenario.tray_section import WALL
 UNCERTAINTY = 0.10  # P1 3.7.1 [m]
 RESOLUTION = 0.05  # P1 3.6 [m]
 TOP = 0.03  # thickness of the table's top [m]
+OPENING = 0.02  # of the hand at a grasp [m]
 MARKER = LinkShape(Box([0.001, 0.001, 0.001]), _core.pose([0, 0, 0.0005]))
 
 
@@ -55,6 +56,8 @@ class Row:
     """Angle of the fingers' closing direction against the row's [rad]."""
     tilt: float = np.pi / 6
     """Angle of the approach from straight down towards the robot's heading [rad]."""
+    margin: float = 0.02
+    """From the tray's edge to the middles of the outermost objects [m]: they fill its corners (P1 3.6.1)."""
     deep: bool = False
     """The tray's 40 cm lie along x (away from the robot) instead of along the row."""
     ik_seeds: int = 8
@@ -78,9 +81,10 @@ class Row:
         return _core.pose([0, middle, self.table + 0.006])
 
     def object_places(self) -> np.ndarray:
-        """(m, 2): the middles of a x b equal cells of the tray, x fastest [m]."""
+        """(m, 2): a x b points at equal distances from corner to corner, x fastest [m]; one alone in the middle."""
         counts = self.objects[::-1] if self.deep else self.objects
-        axes = [((np.arange(n) + 0.5) / n - 0.5) * length for n, length in zip(counts, self.tray_size[:2], strict=True)]
+        ends = [length / 2 - self.margin for length in self.tray_size[:2]]
+        axes = [np.linspace(-end, end, n) if n > 1 else np.zeros(1) for n, end in zip(counts, ends, strict=True)]
         return np.array([(x, y) for y in axes[1] for x in axes[0]])
 
     def problem(self, parts: Sequence[Sequence[Part]] | None = None) -> PartSupplyProblem:
@@ -122,13 +126,27 @@ class Row:
         chosen = None if self.targets is None else set(self.targets[tray])
         parts = []
         for i, (x, y) in enumerate(self.object_places()):
-            grasps = [Grasp(_core.pose([0, 0, self.tool], rpy=rpy), 0.02) for rpy in rolls]
+            grasps = [Grasp(_core.pose([0, 0, self.tool], rpy=rpy), OPENING) for rpy in rolls]
             T_world_part = T_world_tray @ _core.pose([x, y, 0.0])
             parts.append(Part(f"{tray}/{i}", [MARKER], T_world_part, grasps, target=chosen is None or i in chosen))
         return parts
 
     def with_(self, **changes: Any) -> Row:
         return replace(self, **changes)
+
+
+BAR = (0.02, 0.02, 0.05)  # [m]; at 6x8 objects the fingers still fit between two of them
+
+
+def bars(row: Row) -> list[Part]:
+    """Upright bars at the places of the row's first tray, with antipodal grasps sampled on them: parts with bodies, taken below the rim."""
+    shape = LinkShape(Box(list(BAR)), _core.pose([0, 0, BAR[2] / 2]))
+    grasps = _core.sample_grasps([shape], robot_setup(row.torso).gripper)
+    T_world_tray = row.tray_pose(row.tray_middles()[0])
+    return [
+        Part(f"0/{i}", [shape], T_world_tray @ _core.pose([x, y, 0.0]), grasps)
+        for i, (x, y) in enumerate(row.object_places())
+    ]
 
 
 @functools.cache
@@ -142,6 +160,37 @@ def robot_setup(torso: float) -> RobotSetup:
     section["home"] = home
     section["joints"] = {**section["joints"], "torso_lift_joint": torso}
     return read_setup(choose_sections(document.root, None))
+
+
+class ChecksAtBase:
+    """Collision checks of base and arm together, at rest with the hand closed and with it open for the parts.
+
+    Base poses are (k, 3) arrays of x, y, theta, arm configurations (k, n) arrays of the same length.
+    """
+
+    def __init__(self, problem: PartSupplyProblem, torso: float) -> None:
+        moving = problem.robot.group("arm", tip=problem.gripper.tool_link, with_base=True)
+        world = problem.world.copy()
+        for tray in problem.trays:
+            for part in tray.parts:
+                world.add(part.name, part.shapes, part.T_world_part)
+        self._home = problem.home
+        self._rest, self._open = (
+            CollisionChecker(
+                problem.robot,
+                world,
+                group=moving.with_reference({"torso_lift_joint": torso} | problem.gripper.joint_values(opening)),
+            )
+            for opening in (0.0, problem.gripper.pregrasp_opening(OPENING))
+        )
+
+    def at_home(self, bases: np.ndarray) -> np.ndarray:
+        """Where the robot at home stands free."""
+        return self._rest.are_free(np.hstack([bases, np.tile(self._home, (len(bases), 1))]))
+
+    def free(self, bases: np.ndarray, Q: np.ndarray) -> np.ndarray:
+        """Which arm configurations are free with the hand open."""
+        return self._open.are_free(np.hstack([bases, Q]))
 
 
 def database(row: Row, samples: int, *, seed: int = 1, progress: Progress = None, **options: Any) -> ReachDatabase:

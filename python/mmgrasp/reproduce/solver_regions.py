@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .. import _core
+from . import stored_regions
 from .drawing import TRAY_COLOURS, cells_to_runs, draw_cells, figure, grid_values
 from .entry import Context, Entry, Result
-from .setup import Row, database, describe, reach_samples
+from .setup import ChecksAtBase, Row, database, describe, reach_samples
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -54,27 +55,19 @@ class _Solver:
 
     def __init__(self, problem: _core.PartSupplyProblem, torso: float, restarts: int) -> None:
         self.home, self.arm, self.restarts = problem.home, problem.arm, restarts
-        moving = problem.robot.group("arm", tip=problem.gripper.tool_link, with_base=True)
-        reference = {"torso_lift_joint": torso}
-        world = problem.world.copy()
-        for tray in problem.trays:
-            for part in tray.parts:
-                world.add(part.name, part.shapes, part.T_world_part)
-        opening = problem.gripper.pregrasp_opening(0.02)
-        at_rest = moving.with_reference(reference | problem.gripper.joint_values(0.0))
-        opened = moving.with_reference(reference | problem.gripper.joint_values(opening))
-        self.rest = _core.CollisionChecker(problem.robot, world, group=at_rest)
-        self.open = _core.CollisionChecker(problem.robot, world, group=opened)
+        self.checks = ChecksAtBase(problem, torso)
 
     def at_home(self, base: list[float]) -> bool:
-        return self.rest.is_free([*base, *self.home])
+        return bool(self.checks.at_home(np.array([base]))[0])
 
     def reaches(self, base: list[float], T_world_tip: np.ndarray) -> bool:
         T_base_tip = _core.pose([-base[0], -base[1], 0.0]) @ T_world_tip  # the heading is 0
         if np.linalg.norm(T_base_tip[:2, 3]) > 1.2:
             return False
         found = self.arm.ik(T_base_tip, seed=self.home, restarts=self.restarts, time_limit=10.0)
-        return found.outcome == _core.Outcome.solved and self.open.is_free([*base, *found.q])
+        return found.outcome == _core.Outcome.solved and bool(
+            self.checks.free(np.array([base]), found.q[None])[0]
+        )
 
 
 def by_database(row: Row, samples: int) -> dict[str, Any]:
@@ -116,7 +109,8 @@ def run(context: Context) -> Result:
     grid = kept["grid"]
     ours = [_mask(grid, runs) for runs in kept["runs"]]
     theirs = [_mask(grid, one["runs"]) for one in solved]
-    result = Result(setup=describe(row, samples))
+    papers = stored_regions.run(context, [row] * row.trays, range(row.trays))
+    result = Result(setup=describe(row, samples) | papers.describe())
     result.setup["solver"] = f"damped least squares from the home configuration, {restarts} random restarts, one answer"
     for t in range(row.trays):
         values = result.row({"tray": t + 1})
@@ -125,6 +119,8 @@ def run(context: Context) -> Result:
         values["found by the solver only"] = (None, int((theirs[t] & ~ours[t]).sum()))
         values["objects"] = (None, row.per_tray)
         values["grasps"] = (None, row.per_tray * row.grasps)
+        papers.fill(values, t)
+    papers.conclude(result)
     by_order = {"solver": shared_sets(theirs), "database": shared_sets(ours)}
     for order, paper in ((2, (5, 5)), (3, (0, 2))):
         values = result.row({"order": order})

@@ -12,7 +12,6 @@ from .._files import read_bytes
 from ..documents.reading import Node, read_yaml
 from .robot_section import find_file
 
-KEYS = "map height unknown"
 LARGEST_IMAGE = 100_000_000  # [bytes]
 MOST_CELLS = 25_000_000
 MOST_BOXES = 20_000

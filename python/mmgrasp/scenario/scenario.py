@@ -16,10 +16,11 @@ from .._core import verify as checks
 from .._files import check_folder, shipped
 from .._progress import Progress
 from ..documents.reading import RENAMED, Node, read_yaml
-from . import floor_map
+from . import cell_bodies, floor_map
 from .contact_rules import ContactRules, read_contact_rules
 from .robot_section import RobotSetup, choose_sections, find_file, read_setup
 from .scan_section import ScanReader, moved
+from .schema import with_article
 from .shapes import read_shapes
 from .tray_section import PartType, TraySetup, read_part_types, read_tray
 
@@ -31,6 +32,8 @@ FLOOR = "floor"
 REPLACING = "replacing a damaged reachability database"  # the stage that ReachDatabase.load_or_build reports
 LEAST_SAMPLES = 10_000  # of the database of what the arm reaches
 SHAPE_KEYS = "box cylinder sphere mesh shapes scale"
+FILE_KEYS = {"map": "height unknown", "octree": "unknown within", "cloud": "cell within"}  # obstacles read from files
+OBSTACLE_KEYS = " ".join(dict.fromkeys(["pose", *FILE_KEYS, *" ".join(FILE_KEYS.values()).split(), SHAPE_KEYS]))
 
 
 @dataclass
@@ -245,23 +248,24 @@ def _read_covariance(node: Node) -> np.ndarray:
 def _read_obstacles(root: Node) -> list[Obstacle]:
     out = []
     for node in root["obstacles"].elements() if "obstacles" in root else []:
-        node.mapping("name", f"pose {floor_map.KEYS} {SHAPE_KEYS}")
+        node.mapping("name", OBSTACLE_KEYS)
         pose = node["pose"].pose() if "pose" in node else np.eye(4)
         out.append(Obstacle(node["name"].label(), pose, _read_obstacle_shapes(node)))
     return out
 
 
 def _read_obstacle_shapes(node: Node) -> list[LinkShape]:
-    """A map's boxes, or the shapes of a body."""
-    if "map" not in node:
-        for key in ("height", "unknown"):
-            if key in node:
-                node[key].fail("only a map has it")
-        return read_shapes(node, find_file)
-    for key in SHAPE_KEYS.split():
-        if key in node:
-            node[key].fail("a map has no other shape")
-    return floor_map.read_floor_map(node)
+    """The boxes of a map, an octree or a cloud, or the shapes of a body."""
+    given = [name for name in FILE_KEYS if name in node]
+    if len(given) > 1:
+        node[given[1]].fail(f"{with_article(given[0])} has no {given[1]} beside it: give each an obstacle of its own")
+    own = FILE_KEYS[given[0]].split() if given else SHAPE_KEYS.split()
+    for key in dict.fromkeys(" ".join([*FILE_KEYS.values(), SHAPE_KEYS]).split()):
+        if key in node and key not in own and key not in given:
+            owners = " or ".join(with_article(name) for name, keys in FILE_KEYS.items() if key in keys.split())
+            node[key].fail(f"only {owners} has it" if owners else f"{with_article(given[0])} has no other shape")
+    readers = {"map": floor_map.read_floor_map, "octree": cell_bodies.read_octree, "cloud": cell_bodies.read_cloud}
+    return readers[given[0]](node) if given else read_shapes(node, find_file)
 
 
 def _read_floor(root: Node, obstacles: list[Obstacle]) -> float | None:

@@ -94,7 +94,7 @@ def _broken(value: Any, schema: dict[str, Any]) -> str:
     kinds = schema.get("type", [])
     kinds = [kinds] if isinstance(kinds, str) else kinds
     if kinds and not any(_is_of(value, kind) for kind in kinds):
-        return "must be " + " or ".join(map(_with_article, kinds))
+        return "must be " + " or ".join(map(with_article, kinds))
     if isinstance(value, str):
         if len(value) < schema.get("minLength", 0):
             return "must be a text that is not empty"
@@ -112,7 +112,8 @@ def _is_of(value: Any, kind: str) -> bool:
     return isinstance(value, _TYPES[kind]) and (not isinstance(value, bool) or kind == "boolean")
 
 
-def _with_article(kind: str) -> str:
+def with_article(kind: str) -> str:
+    """A word behind its article."""
     return kind if kind == "null" else f"{'an' if kind[0] in 'aio' else 'a'} {kind}"
 
 

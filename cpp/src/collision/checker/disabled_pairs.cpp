@@ -1,7 +1,9 @@
 #include "mmgrasp/collision/disabled_pairs.hpp"
 
 #include <algorithm>
+#include <numeric>
 
+#include "collision/checker/never_touch.hpp"
 #include "collision/checker/pair_plan.hpp"
 #include "collision/narrow/narrow.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
@@ -13,9 +15,14 @@ namespace mmgrasp {
 
 namespace {
 
+constexpr int kMaxBoxes = 10000;  // of joint values in a proof: more prove few further pairs
+
 struct BodyPair {
   int a, b;               // bodies
   std::vector<int> hits;  // one counter per worker, so that counting needs no lock
+  bool never = false;     // proven
+
+  int count() const { return std::accumulate(hits.begin(), hits.end(), 0); }
 };
 
 std::pair<int, int> ordered(int a, int b) {
@@ -122,14 +129,18 @@ Robot compute_disabled_pairs(const Robot& robot, const DisabledPairsOptions& opt
     sampler.count(random_values(robot, rng), worker, open);
   };
   // Stopped early the counts mean nothing: only what is known for certain is returned then.
-  const bool complete = parallel_for(options.samples, threads, work, monitor, "self-collision pairs");
+  bool complete = parallel_for(options.samples, threads, work, monitor, "self-collision pairs");
+  const detail::NeverTouch never_touch(snapshot);
+  const auto prove = [&](std::size_t pair, int) {
+    BodyPair& one = open[pair];
+    one.never = one.count() == 0 && (options.trust_samples || never_touch.proven(one.a, one.b, kMaxBoxes));
+  };
+  complete = complete && parallel_for(open.size(), threads, prove, monitor, "pairs that never touch");
   for (const BodyPair& pair : open) {
     if (!complete) break;
-    int hits = 0;
-    for (const int part : pair.hits) hits += part;
     const auto key = ordered(snapshot.bodies[pair.a].link, snapshot.bodies[pair.b].link);
-    if (hits == 0) disabled.emplace(key, DisabledReason::never);
-    if (hits >= options.always_fraction * options.samples) disabled.emplace(key, DisabledReason::always);
+    if (pair.never) disabled.emplace(key, DisabledReason::never);
+    if (pair.count() >= options.always_fraction * options.samples) disabled.emplace(key, DisabledReason::always);
   }
   return robot.with_disabled_pairs(std::move(disabled));
 }

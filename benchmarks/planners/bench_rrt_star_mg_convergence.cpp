@@ -4,7 +4,9 @@
 // than that, in percent, mean and worst of all runs after so many samples. Less than zero: the checks' steps of 5 mm
 // let a path cut the corner of a wall.
 //
-//     bench_rrt_star_mg_convergence [runs, 20] [samples, 20000] [scenes whose name contains this]
+// Each run's percentages go to the error stream, so that a long table can be taken in pieces.
+//
+//     bench_rrt_star_mg_convergence [runs, 20] [samples, 20000] [scenes whose name contains this] [first seed, 1]
 
 #include <algorithm>
 #include <cstdio>
@@ -89,16 +91,21 @@ int main(int argc, char** argv) {
   for (std::size_t i = 0; i < columns + 2; ++i) std::printf("---|");
   std::printf("\n");
   const std::string wanted = argc > 3 ? argv[3] : "";
+  const int first = argc > 4 ? std::atoi(argv[4]) : 1;
   for (const Case& which : cases()) {
     if (which.name.find(wanted) == std::string::npos) continue;
     std::vector<Run> found;
     double seconds = 0, best = std::numeric_limits<double>::infinity();
     std::size_t waypoints = 0;
-    for (int seed = 1; seed <= runs; ++seed) {
+    for (int seed = first; seed < first + runs; ++seed) {
       found.push_back(run(which.problem, static_cast<unsigned>(seed), samples));
       seconds += found.back().seconds / runs;
       waypoints = std::max(waypoints, found.back().waypoints);
       best = std::min(best, found.back().costs[columns - 1]);
+      std::fprintf(stderr, "%s, seed %d, %.2f s:", which.name.c_str(), seed, found.back().seconds);
+      for (std::size_t i = 0; i < columns && which.optimum > 0; ++i)
+        std::fprintf(stderr, " %.4f", 100 * (found.back().costs[i] / which.optimum - 1));
+      std::fprintf(stderr, "\n");
     }
     const bool known = which.optimum > 0;
     const double optimum = known ? which.optimum : best;

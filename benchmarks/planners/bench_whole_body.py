@@ -23,7 +23,7 @@ import numpy as np
 import mmgrasp as mg
 
 PLANNERS = ("rrt_connect", "ompl_rrt_connect")
-TIME_LIMIT, LONG, ITERATIONS = 5.0, 50.0, 20000
+TIME_LIMIT, LONG, ITERATIONS = 5.0, 50.0, 2_000_000  # the time decides: 20,000 states are a tenth of a second
 ARM_BOXES, ROOM_BOXES, ROOM = 24, 40, 3.0
 
 

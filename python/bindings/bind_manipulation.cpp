@@ -3,6 +3,7 @@
 
 #include "bindings.hpp"
 #include "given.hpp"
+#include "joint_weights.hpp"
 #include "mmgrasp/plan/manipulation.hpp"
 #include "padding.hpp"
 #include "plan_arguments.hpp"
@@ -64,7 +65,8 @@ const Fields& prm_fields() {
 const Fields& rrt_fields() {
   static const Fields fields{
       of_rrt("max_iterations", &RrtStarMgOptions::max_iterations, "rrt_star_mg: budget in samples"),
-      of_rrt("range", &RrtStarMgOptions::range, "rrt_star_mg: longest edge grown towards a sample [rad or m]"),
+      of_rrt("range", &RrtStarMgOptions::range,
+             "rrt_star_mg: longest edge grown towards a sample [rad or m, times the weights' root mean square]"),
       of_rrt("rrt_gamma", &RrtStarMgOptions::gamma,
              "rrt_star_mg: vertices nearer than gamma (log n / n)^(1/(d+1)) are joined; 0: about (d + 1) / 2 "
              "n^(1/(d+1)) log n of n"),
@@ -93,6 +95,7 @@ const Fields& manipulation_fields() {
                   "no joint moves more between two checks of an edge [rad or m]"),
         option<O>("workspace_step", &O::edge, &EdgeOptions::workspace_step,
                   "no point of the robot or the object moves more between two checks [m]"),
+        joint_weights_option<O>(&O::joint_weights),
         option<O>("max_length", &O::max_length, "the least grasp cost among paths no longer than this; 0: their sum"),
         option<O>("time_limit", &O::time_limit, "wall-clock cap on IK and search, without the roadmap's building [s]"),
         option<O>("seed", &O::seed, "same seed, same path"),
@@ -124,25 +127,30 @@ void bind_manipulation(py::module_& m) {
   m.def(
       "plan_manipulation",
       [](const Given<ManipulationProblem>& given_problem, const std::optional<Given<Roadmap>>& given_roadmap,
-         const OptionalPadding& padding, const Progress& progress, const OnSolution& on_solution,
-         const py::kwargs& options) {
+         const std::optional<Given<CollisionChecker>>& given_checker, const OptionalPadding& padding,
+         const Progress& progress, const OnSolution& on_solution, const py::kwargs& options) {
         ManipulationProblem problem = taken(given_problem, "problem");
+        if (given_checker && !padding.is_none())
+          throw InvalidInput("padding: must be left out with a checker, which has its world's");
         problem.world = padded(problem.world, padding);
+        std::optional<CollisionChecker> checker;
+        if (given_checker) checker = taken(*given_checker, "checker").clone();
         const Roadmap* roadmap = given_roadmap ? &taken(*given_roadmap, "roadmap") : nullptr;
         const ManipulationOptions read = read_options(manipulation_fields(), options, "plan_manipulation");
         refuse_options_of_others(options, roadmap != nullptr, read.planner);
         SolutionCallback callback(on_solution);
         ManipulationResult result = LongCall(progress).run([&](const Monitor& monitor) {
-          return plan_manipulation(problem, read, roadmap, monitor, callback.function(monitor));
+          return plan_manipulation(problem, read, roadmap, monitor, callback.function(monitor),
+                                   checker ? &*checker : nullptr);
         });
         callback.raise();
         return result;
       },
-      "problem"_a, py::kw_only(), "roadmap"_a = py::none(), "padding"_a = py::none(), "progress"_a = py::none(),
-      "on_solution"_a = py::none(),
+      "problem"_a, py::kw_only(), "roadmap"_a = py::none(), "checker"_a = py::none(), "padding"_a = py::none(),
+      "progress"_a = py::none(), "on_solution"_a = py::none(),
       ("Collision-free path of the group that carries the object from start to goal with the best of the grasps (P2 "
        "chapters 4 and 5). Every grasp is checked. `padding`: in place of that of the problem's world, see "
-       "World.padding. "
+       "World.padding. `checker`: a prepared CollisionChecker of the problem's group and world. "
        "`on_solution` is called with every better solution (an "
        "Improvement); "
        "what "

@@ -1,20 +1,13 @@
 #include "bindings.hpp"
+#include "checker_argument.hpp"
 #include "given.hpp"
+#include "joint_weights.hpp"
 #include "mmgrasp/plan/motion.hpp"
-#include "padding.hpp"
 #include "plan_arguments.hpp"
-#include "same_robot.hpp"
 #include "solution_callback.hpp"
 
 namespace mmgrasp::python {
 namespace {
-
-constexpr char kRobotOrChecker[] = "mmgrasp._core.Robot | mmgrasp._core.CollisionChecker";
-using RobotOrChecker = Shown<kRobotOrChecker>;
-constexpr char kOptionalGroup[] = "mmgrasp._core.JointGroup | None";
-using OptionalGroup = Shown<kOptionalGroup>;
-constexpr char kOptionalWorld[] = "mmgrasp._core.World | None";
-using OptionalWorld = Shown<kOptionalWorld>;
 
 using namespace py::literals;
 
@@ -24,7 +17,10 @@ const std::vector<OptionField<MotionOptions>>& motion_fields() {
       option<O>("planner", &O::planner, "a name of planner_names()"),
       option<O>("time_limit", &O::time_limit, "wall-clock cap [s]"),
       option<O>("max_iterations", &O::max_iterations, "budget in states drawn"),
-      option<O>("range", &O::range, "longest tree edge [rad]; 0: a share of the joint limits's diagonal"),
+      joint_weights_option<O>(&O::joint_weights),
+      option<O>("range", &O::range,
+                "longest tree edge [rad or m, times the weights' root mean square]; 0: a share of the joint limits' "
+                "diagonal"),
       option<O>("near_end_probability", &O::near_end_probability,
                 "roadmap planners: chance to draw around the start or a goal; 0: uniform draws alone"),
       option<O>("base_margin", &O::base_margin, "the base is drawn this far around start and goals [m]"),
@@ -45,20 +41,6 @@ std::vector<Eigen::VectorXd> goals_argument(const ArrayLike& goal, Eigen::Index 
   PyErr_Clear();
   if (array && array.ndim() == 2) return configurations_argument(goal, "goal", size);
   return {configuration_argument(goal, "goal", size)};
-}
-
-/// The checker itself (its clone), or one made for group and world.
-CollisionChecker checker_argument(const RobotOrChecker& robot, const OptionalGroup& given_group,
-                                  const OptionalWorld& given_world, const OptionalPadding& padding) {
-  if (py::isinstance<CollisionChecker>(robot)) {
-    if (!given_group.is_none() || !given_world.is_none() || !padding.is_none())
-      throw InvalidInput("robot: is a CollisionChecker, which has its own group, world and padding: leave those out");
-    return py::cast<const CollisionChecker&>(robot).clone();
-  }
-  const JointGroup& group = taken(py::reinterpret_borrow<Given<JointGroup>>(given_group), "group");
-  check_same_robot(taken(py::reinterpret_borrow<Given<Robot>>(robot), "robot"), group);
-  const World& world = taken(py::reinterpret_borrow<Given<World>>(given_world), "world");
-  return CollisionChecker(with_sampled_pairs(group), padded(world, padding));
 }
 
 MotionResult motion(const RobotOrChecker& robot, const OptionalGroup& given_group, const OptionalWorld& world,
@@ -126,7 +108,7 @@ void bind_motion(py::module_& m) {
       .def_readonly("seconds", &MotionStats::seconds, "Wall-clock time [s].")
       .def_readonly("collision_queries", &MotionStats::collision_queries, "Configurations checked.")
       .def_readonly("length_before_shortening", &MotionStats::length_before_shortening,
-                    "Length of the first path in joint space.")
+                    "Length of the first path in joint space, weighted likewise.")
       .def(
           "to_dict",
           [](const MotionStats& s) {
@@ -143,7 +125,7 @@ void bind_motion(py::module_& m) {
       .def_property_readonly(
           "path", [](const MotionResult& r) { return path_array(r.path); },
           "Waypoints (k, n), joined by straight lines; None unless solved.")
-      .def_readonly("cost", &MotionResult::cost, "Length of the path in joint space.")
+      .def_readonly("cost", &MotionResult::cost, "Length of the path in joint space, weighted by `joint_weights`.")
       .def_readonly("goal_index", &MotionResult::goal_index, "Which of the goals the path reaches; -1 unless solved.")
       .def_readonly("contacts", &MotionResult::contacts, "With invalid_start or invalid_goal: what touches.")
       .def_readonly("rejections", &MotionResult::rejections, "Why the start, or goals, were rejected.")

@@ -1,5 +1,6 @@
 #include "bindings.hpp"
 #include "given.hpp"
+#include "joint_weights.hpp"
 #include "mmgrasp/plan/roadmap.hpp"
 
 namespace mmgrasp::python {
@@ -18,7 +19,7 @@ const std::vector<OptionField<RoadmapOptions>>& roadmap_fields() {
                 "> 0: vertices nearer than gamma (log n / n)^(1/d) are joined (P2: 4) [rad or m]; 0: the "
                 "e (1 + 1/d) log n nearest ones"),
       option<O>("neighbours", &O::neighbours, "> 0: that many nearest ones are joined instead"),
-      option<O>("seed", &O::seed, "same seed, same roadmap")};
+      joint_weights_option<O>(&O::joint_weights), option<O>("seed", &O::seed, "same seed, same roadmap")};
   return fields;
 }
 

@@ -3,10 +3,10 @@
 
 #include "bindings.hpp"
 #include "drive_by_arguments.hpp"
+#include "checker_argument.hpp"
 #include "mmgrasp/optim/nlp_solver.hpp"
 #include "mmgrasp/task/drive_by.hpp"
 #include "push_fields.hpp"
-#include "same_robot.hpp"
 
 namespace mmgrasp::python {
 namespace {
@@ -292,16 +292,16 @@ DriveByResult shorten(const JointGroup& group, const World& world, const std::ve
       [&](const Monitor& monitor) { return shorten_drive_by(with_pairs, world, tasks, known, read, monitor); });
 }
 
-DriveByResult drive_by(const Robot& robot, const JointGroup& group, const World& world, const ArrayLike& start,
-                       const std::vector<DriveByTask>& tasks, const ArrayLike& goal, const Progress& progress,
-                       const py::kwargs& options) {
-  check_same_robot(robot, group);
+DriveByResult drive_by(const RobotOrChecker& robot, const OptionalGroup& given_group, const OptionalWorld& world,
+                       const ArrayLike& start, const std::vector<DriveByTask>& tasks, const ArrayLike& goal,
+                       const Progress& progress, const py::kwargs& options) {
+  const CollisionChecker checker = checker_argument(robot, given_group, world);
+  const JointGroup& group = checker.group();
   const DriveByOptions read = read_options(drive_by_fields(), options, "plan_drive_by");
   const Eigen::VectorXd from = configuration_argument(start, "start", group.size());
   const DriveByGoal to = goal_argument(goal, group.size());
-  const JointGroup with_pairs = with_sampled_pairs(group);
   return LongCall(progress).run(
-      [&](const Monitor& monitor) { return plan_drive_by(with_pairs, world, from, tasks, to, read, monitor); });
+      [&](const Monitor& monitor) { return plan_drive_by(checker, from, tasks, to, read, monitor); });
 }
 
 }  // namespace
@@ -358,15 +358,17 @@ void bind_trajopt(py::module_& m) {
       "took, and iterations.");
   bind_trajectory_class(m);
   bind_drive_by_result(m);
-  m.def("plan_drive_by", &drive_by, py::arg("robot"), py::arg("group"), py::arg("world"), py::kw_only(),
-        py::arg("start"), py::arg("tasks"), py::arg("goal"), py::arg("progress") = py::none(),
-        ("The fastest motion of base and arm from `start` (n,), at rest, through the tasks in order to `goal`, at "
-         "rest, without\n"
-         "stopping for them (P1 chapter 4). goal: a configuration (n,), or (2, n) with lower and upper bounds, "
-         "infinite where it\n"
-         "does not matter. The world's objects and the robot itself are obstacles." +
-         option_help(drive_by_fields()))
-            .c_str());
+  m.def(
+      "plan_drive_by", &drive_by, py::arg("robot"), py::arg("group") = py::none(), py::arg("world") = py::none(),
+      py::kw_only(), py::arg("start"), py::arg("tasks"), py::arg("goal"), py::arg("progress") = py::none(),
+      ("The fastest motion of base and arm from `start` (n,), at rest, through the tasks in order to `goal`, at "
+       "rest, without\n"
+       "stopping for them (P1 chapter 4). goal: a configuration (n,), or (2, n) with lower and upper bounds, "
+       "infinite where it\n"
+       "does not matter. The world's objects and the robot itself are obstacles. A prepared CollisionChecker may stand "
+       "in place of robot, group and world." +
+       option_help(drive_by_fields()))
+          .c_str());
   m.def(
       "shorten_drive_by", &shorten, py::arg("group"), py::arg("world"), py::kw_only(), py::arg("tasks"),
       py::arg("times"), py::arg("positions"), py::arg("task_times"), py::arg("progress") = py::none(),

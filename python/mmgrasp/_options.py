@@ -1,6 +1,9 @@
 """The options of calls as types, for functions that pass keywords on. Written by `./dev stubs`."""
 
+from collections.abc import Mapping
 from typing import TypedDict
+
+from numpy.typing import ArrayLike
 
 
 class CheckOptions(TypedDict, total=False):
@@ -72,6 +75,7 @@ class MotionOptions(TypedDict, total=False):
     planner: str
     time_limit: float
     max_iterations: int
+    joint_weights: ArrayLike | Mapping[str, float] | None
     range: float
     near_end_probability: float
     base_margin: float

@@ -170,6 +170,7 @@ COMPANIONS: dict[str, dict[str, Any]] = {
     "plan_platform_locations.T_link_camera": {"camera_link": "tip"},
     **{f"plan_motion.{name}": {"group": ARM, "world": world()} for name in ("goal", "tool_poses")},
     **{f"plan_motion.{name}": {"group": ARM, "world": world(), "goal": Q} for name in ("start", "via")},
+    **{f"plan_drive_by.{name}": {"group": ARM, "world": world()} for name in ("start", "goal")},
     "plan_stops_exact.goal": {"start": np.array([0.5, 0.25])},
     "plan_stops_exact.start": {"goal": np.array([0.25, 0.5])},
     "fit_cuboids.T_world_tray": {"tray_size": [0.3, 0.4, 0.1]},

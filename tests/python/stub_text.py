@@ -101,10 +101,12 @@ def option_types(calls: Mapping[str, tuple[str, Any, Sequence[str]]]) -> str:
         lines += ["", "", f"class {name}(TypedDict, total=False):", f'    """Keyword options of {said}: defaults and meaning are there."""', ""]  # fmt: skip
         options = [found for line in (call.__doc__ or "").splitlines() if (found := OPTION.match(line))]
         assert options, said
-        kinds = {o["name"]: o["type"].replace("numpy.typing.", "") for o in options}
+        kinds = {o["name"]: re.sub(r"numpy\.typing\.|collections\.abc\.", "", o["type"]) for o in options}
         lines += [f"    {option}: {kind}" for option, kind in kinds.items() if option not in left_out]
     if any("ArrayLike" in line for line in lines):
         lines[3:3] = ["", "from numpy.typing import ArrayLike"]
+    if any("Mapping[" in line for line in lines):
+        lines[2:2] = ["from collections.abc import Mapping"]
     return "\n".join(lines) + "\n"
 
 

@@ -109,6 +109,24 @@ def test_same_seed_same_answer(plan: mg.planning.DriveByResult, robot: mg.Robot,
     assert again.trajectory.to_csv() == plan.trajectory.to_csv()
 
 
+def test_a_prepared_checker_gives_the_same_answer(robot: mg.Robot, group: mg.robot.JointGroup) -> None:
+    world = mg.World()
+    world.add_box("table", size=(1, 1, 0.3), pose=mg.pose([5.5, -2.2, 0.15]))
+    arguments: dict[str, Any] = {"start": START, "tasks": [mg.DriveByTask(TASK)], "goal": GOAL, **PATIENT}
+    made = mg.plan_drive_by(robot, group, world, **arguments)
+    checker = mg.CollisionChecker(robot, world, group=group)
+    prepared = mg.plan_drive_by(checker, **arguments)
+    assert made.outcome == mg.Outcome.solved, made.report
+    assert prepared.trajectory.to_csv() == made.trajectory.to_csv()
+    assert prepared.report == made.report
+    with pytest.raises(mg.InvalidInput, match="which has its own group, world and padding: leave those out"):
+        mg.plan_drive_by(checker, group, **arguments)
+    with pytest.raises(mg.InvalidInput, match="group"):
+        mg.plan_drive_by(robot, **arguments)
+    with pytest.raises(mg.InvalidInput, match="attached_only"):
+        mg.plan_drive_by(mg.CollisionChecker(robot, world, group=group, attached_only=True), **arguments)
+
+
 def test_results_print_and_convert(plan: mg.planning.DriveByResult) -> None:
     assert repr(plan).startswith("DriveByResult(solved, ")
     assert "waypoints" in repr(plan.trajectory)

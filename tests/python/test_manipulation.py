@@ -126,7 +126,13 @@ def test_a_roadmap_tells_of_itself() -> None:
     q = np.array([0.1, 0.2, 0.3])
     nearest = np.argsort(np.linalg.norm(roadmap.vertices - q, axis=1))[:5]
     assert roadmap.near(q) == sorted(nearest.tolist())
-    assert roadmap.to_dict()["options"] == {"vertices": 200, "gamma": 0.0, "neighbours": 5, "seed": 3}
+    assert roadmap.to_dict()["options"] == {
+        "vertices": 200,
+        "gamma": 0.0,
+        "neighbours": 5,
+        "joint_weights": None,
+        "seed": 3,
+    }
     assert "200 vertices" in repr(roadmap)
 
 
@@ -376,3 +382,23 @@ def test_goal_cost_may_be_infinite() -> None:
     for wrong in (float("nan"), -float("inf"), -1.0):
         with pytest.raises(mg.InvalidInput, match="goal_cost"):
             mg.plan_manipulation(problem(), planner="rrt_star_mg", goal_cost=wrong)
+
+
+@pytest.mark.parametrize("planner", ["prm_star_mg", "rrt_star_mg"])
+def test_a_prepared_checker_gives_the_same_answer(planner: str) -> None:
+    checker = mg.CollisionChecker(ARM.robot, scene(), group=ARM)
+    made, prepared = (mg.plan_manipulation(problem(), planner=planner, checker=c) for c in (None, checker))
+    assert made.outcome == mg.Outcome.solved
+    assert np.array_equal(prepared.path, made.path) and prepared.cost == made.cost
+
+
+def test_a_checker_of_something_else_is_refused() -> None:
+    for checker, said in [
+        (mg.CollisionChecker(ARM.robot, mg.World(), group=ARM), "its world lacks 'corner'"),
+        (mg.CollisionChecker(ARM.robot, scene(), group=ARM.robot.group(base_link="l0", tip="l2")), "another group"),
+        (mg.CollisionChecker(planar_arm(2).robot, scene(), group=planar_arm(2)), "another robot"),
+    ]:
+        with pytest.raises(mg.InvalidInput, match=said):
+            mg.plan_manipulation(problem(), checker=checker)
+    with pytest.raises(mg.InvalidInput, match="padding: must be left out with a checker"):
+        mg.plan_manipulation(problem(), checker=mg.CollisionChecker(ARM.robot, scene(), group=ARM), padding=0.01)

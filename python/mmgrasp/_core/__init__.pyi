@@ -2096,7 +2096,7 @@ class MotionStats:
     @property
     def length_before_shortening(self) -> float:
         """
-        Length of the first path in joint space.
+        Length of the first path in joint space, weighted likewise.
         """
     @property
     def seconds(self) -> float:
@@ -2126,7 +2126,7 @@ class MotionResult:
     @property
     def cost(self) -> float:
         """
-        Length of the path in joint space.
+        Length of the path in joint space, weighted by `joint_weights`.
         """
     @property
     def goal_index(self) -> int:
@@ -2267,7 +2267,7 @@ class Roadmap:
         roadmap.statistics["largest_component"]
     """
     @staticmethod
-    def build(group: JointGroup, *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, vertices: int = 5000, gamma: float = 0.0, neighbours: int = 0, seed: int = 1) -> Roadmap:
+    def build(group: JointGroup, *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, vertices: int = 5000, gamma: float = 0.0, neighbours: int = 0, joint_weights: numpy.typing.ArrayLike | collections.abc.Mapping[str, float] | None = None, seed: int = 1) -> Roadmap:
         """
         Draws and joins; a larger roadmap of the same seed holds a smaller one's vertices.
         
@@ -2275,6 +2275,7 @@ class Roadmap:
             vertices: int = 5000  # configurations drawn
             gamma: float = 0.0  # > 0: vertices nearer than gamma (log n / n)^(1/d) are joined (P2: 4) [rad or m]; 0: the e (1 + 1/d) log n nearest ones
             neighbours: int = 0  # > 0: that many nearest ones are joined instead
+            joint_weights: numpy.typing.ArrayLike | collections.abc.Mapping[str, float] | None = None  # what a motion of each joint costs in the length of a path, (n,) or by joint name (others: 1), each > 0; None: 1
             seed: int = 1  # same seed, same roadmap
         """
     @staticmethod
@@ -6825,11 +6826,11 @@ def plan_cartesian(checker: CollisionChecker, tool_poses: numpy.typing.ArrayLike
         joint_step: float = 0.02  # largest joint motion between two checks [rad or m]
         max_branches: int = 64  # configurations of the first pose that are followed at most
     """
-def plan_drive_by(robot: Robot, group: JointGroup, world: World, *, start: numpy.typing.ArrayLike, tasks: collections.abc.Sequence[DriveByTask], goal: numpy.typing.ArrayLike, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, waypoints: int = 35, seeds: int = 8, solutions: int = 1, grasp_assignments: int = 8, goal_configurations: int = 64, iterations: int = 1500, time_limit: float = 600.0, jerk_time: float = 0.0, collisions: bool = True, seed: int = 1, threads: int = 1, solver: str = 'ipopt', tolerance: float = 0.0001, max_iterations: int = 150, solve_time_limit: float = 600.0, smoothing: float = 0.01, margin: float = 0.005, constraint_distance: float = 0.15, refinements: int = 6) -> DriveByResult:
+def plan_drive_by(robot: Robot | CollisionChecker, group: JointGroup | None = None, world: World | None = None, *, start: numpy.typing.ArrayLike, tasks: collections.abc.Sequence[DriveByTask], goal: numpy.typing.ArrayLike, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, waypoints: int = 35, seeds: int = 8, solutions: int = 1, grasp_assignments: int = 8, goal_configurations: int = 64, iterations: int = 1500, time_limit: float = 600.0, jerk_time: float = 0.0, collisions: bool = True, seed: int = 1, threads: int = 1, solver: str = 'ipopt', tolerance: float = 0.0001, max_iterations: int = 150, solve_time_limit: float = 600.0, smoothing: float = 0.01, margin: float = 0.005, constraint_distance: float = 0.15, refinements: int = 6) -> DriveByResult:
     """
     The fastest motion of base and arm from `start` (n,), at rest, through the tasks in order to `goal`, at rest, without
     stopping for them (P1 chapter 4). goal: a configuration (n,), or (2, n) with lower and upper bounds, infinite where it
-    does not matter. The world's objects and the robot itself are obstacles.
+    does not matter. The world's objects and the robot itself are obstacles. A prepared CollisionChecker may stand in place of robot, group and world.
     
     Keyword options:
         waypoints: int = 35  # waypoints of the whole motion
@@ -6852,9 +6853,9 @@ def plan_drive_by(robot: Robot, group: JointGroup, world: World, *, start: numpy
         constraint_distance: float = 0.15  # pairs of bodies nearer than this are constrained [m]
         refinements: int = 6  # times that collision constraints may be added
     """
-def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None = None, padding: float | mmgrasp.records.WorldPadding | collections.abc.Mapping[str, float | collections.abc.Mapping[str, float]] | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, on_solution: collections.abc.Callable[[Improvement], typing.Any] | None = None, planner: str = 'prm_star_mg', ik_solutions: int = 8, first_grasps: int = 4, straight: bool = True, ik_restarts: int = 30, joint_step: float = 0.02, workspace_step: float = 0.005, max_length: float = 0.0, time_limit: float = 15.0, seed: int = 1, threads: int = 0, batch: int = 0, lazy_grasps: bool = True, max_vertices: int = 0, shorten: bool = True, refinements: int = 4, vertices: int = 5000, gamma: float = 0.0, neighbours: int = 0, roadmap_seed: int = 1, max_iterations: int = 1000, range: float = 1.5, rrt_gamma: float = 0.0, exploration: float = 0.5, bidirectional: bool = True, informed: bool = True, goal_cost: float = 0.0, keep_trees: bool = False) -> ManipulationResult:
+def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None = None, checker: CollisionChecker | None = None, padding: float | mmgrasp.records.WorldPadding | collections.abc.Mapping[str, float | collections.abc.Mapping[str, float]] | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, on_solution: collections.abc.Callable[[Improvement], typing.Any] | None = None, planner: str = 'prm_star_mg', ik_solutions: int = 8, first_grasps: int = 4, straight: bool = True, ik_restarts: int = 30, joint_step: float = 0.02, workspace_step: float = 0.005, joint_weights: numpy.typing.ArrayLike | collections.abc.Mapping[str, float] | None = None, max_length: float = 0.0, time_limit: float = 15.0, seed: int = 1, threads: int = 0, batch: int = 0, lazy_grasps: bool = True, max_vertices: int = 0, shorten: bool = True, refinements: int = 4, vertices: int = 5000, gamma: float = 0.0, neighbours: int = 0, roadmap_seed: int = 1, max_iterations: int = 1000, range: float = 1.5, rrt_gamma: float = 0.0, exploration: float = 0.5, bidirectional: bool = True, informed: bool = True, goal_cost: float = 0.0, keep_trees: bool = False) -> ManipulationResult:
     """
-    Collision-free path of the group that carries the object from start to goal with the best of the grasps (P2 chapters 4 and 5). Every grasp is checked. `padding`: in place of that of the problem's world, see World.padding. `on_solution` is called with every better solution (an Improvement); what it raises ends the call.
+    Collision-free path of the group that carries the object from start to goal with the best of the grasps (P2 chapters 4 and 5). Every grasp is checked. `padding`: in place of that of the problem's world, see World.padding. `checker`: a prepared CollisionChecker of the problem's group and world. `on_solution` is called with every better solution (an Improvement); what it raises ends the call.
     
     Keyword options:
         planner: str = 'prm_star_mg'  # a name of manipulation_planner_names()
@@ -6864,6 +6865,7 @@ def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None =
         ik_restarts: int = 30  # random starts of arms without a closed form
         joint_step: float = 0.02  # no joint moves more between two checks of an edge [rad or m]
         workspace_step: float = 0.005  # no point of the robot or the object moves more between two checks [m]
+        joint_weights: numpy.typing.ArrayLike | collections.abc.Mapping[str, float] | None = None  # what a motion of each joint costs in the length of a path, (n,) or by joint name (others: 1), each > 0; None: 1
         max_length: float = 0.0  # the least grasp cost among paths no longer than this; 0: their sum
         time_limit: float = 15.0  # wall-clock cap on IK and search, without the roadmap's building [s]
         seed: int = 1  # same seed, same path
@@ -6878,7 +6880,7 @@ def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None =
         neighbours: int = 0  # likewise: > 0: that many nearest ones are joined instead
         roadmap_seed: int = 1  # likewise: same seed, same roadmap
         max_iterations: int = 1000  # rrt_star_mg: budget in samples
-        range: float = 1.5  # rrt_star_mg: longest edge grown towards a sample [rad or m]
+        range: float = 1.5  # rrt_star_mg: longest edge grown towards a sample [rad or m, times the weights' root mean square]
         rrt_gamma: float = 0.0  # rrt_star_mg: vertices nearer than gamma (log n / n)^(1/(d+1)) are joined; 0: about (d + 1) / 2 n^(1/(d+1)) log n of n
         exploration: float = 0.5  # rrt_star_mg: once solved, chance to grow the drawn grasp's own tree (P2's p_blt)
         bidirectional: bool = True  # rrt_star_mg: trees from both ends
@@ -6886,7 +6888,7 @@ def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None =
         goal_cost: float = 0.0  # rrt_star_mg: ends with the first path that costs no more; inf: the first at all
         keep_trees: bool = False  # rrt_star_mg: hand over the trees with the result
     """
-def plan_motion(robot: Robot | CollisionChecker, group: JointGroup | None = None, world: World | None = None, *, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike | None = None, tool_poses: numpy.typing.ArrayLike | None = None, regions: collections.abc.Sequence[ToolRegion] = [], via: numpy.typing.ArrayLike | None = None, orientation_constraint: OrientationConstraint | None = None, padding: float | mmgrasp.records.WorldPadding | collections.abc.Mapping[str, float | collections.abc.Mapping[str, float]] | None = None, on_solution: collections.abc.Callable[[Improvement], typing.Any] | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, planner: str = 'rrt_connect', time_limit: float = 5.0, max_iterations: int = 20000, range: float = 0.0, near_end_probability: float = 0.2, base_margin: float = 2.0, joint_step: float = 0.02, workspace_step: float = ..., shorten: bool = True, shorten_iterations: int = 200, ik_solutions: int = 8, region_samples: int = 16, seed: int = 1) -> MotionResult:
+def plan_motion(robot: Robot | CollisionChecker, group: JointGroup | None = None, world: World | None = None, *, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike | None = None, tool_poses: numpy.typing.ArrayLike | None = None, regions: collections.abc.Sequence[ToolRegion] = [], via: numpy.typing.ArrayLike | None = None, orientation_constraint: OrientationConstraint | None = None, padding: float | mmgrasp.records.WorldPadding | collections.abc.Mapping[str, float | collections.abc.Mapping[str, float]] | None = None, on_solution: collections.abc.Callable[[Improvement], typing.Any] | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, planner: str = 'rrt_connect', time_limit: float = 5.0, max_iterations: int = 20000, joint_weights: numpy.typing.ArrayLike | collections.abc.Mapping[str, float] | None = None, range: float = 0.0, near_end_probability: float = 0.2, base_margin: float = 2.0, joint_step: float = 0.02, workspace_step: float = ..., shorten: bool = True, shorten_iterations: int = 200, ik_solutions: int = 8, region_samples: int = 16, seed: int = 1) -> MotionResult:
     """
     A collision-free path of the group from `start` (n,) to any of its goals: `goal` (n,) or several as (m, n),
     `tool_poses` of the tip, (4, 4) or (m, 4, 4), and `regions` of them, reached by inverse kinematics; by way of the
@@ -6899,7 +6901,8 @@ def plan_motion(robot: Robot | CollisionChecker, group: JointGroup | None = None
         planner: str = 'rrt_connect'  # a name of planner_names()
         time_limit: float = 5.0  # wall-clock cap [s]
         max_iterations: int = 20000  # budget in states drawn
-        range: float = 0.0  # longest tree edge [rad]; 0: a share of the joint limits's diagonal
+        joint_weights: numpy.typing.ArrayLike | collections.abc.Mapping[str, float] | None = None  # what a motion of each joint costs in the length of a path, (n,) or by joint name (others: 1), each > 0; None: 1
+        range: float = 0.0  # longest tree edge [rad or m, times the weights' root mean square]; 0: a share of the joint limits' diagonal
         near_end_probability: float = 0.2  # roadmap planners: chance to draw around the start or a goal; 0: uniform draws alone
         base_margin: float = 2.0  # the base is drawn this far around start and goals [m]
         joint_step: float = 0.02  # largest joint motion between two checks [rad or m]

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <map>
+#include <tuple>
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "support/around.hpp"
@@ -146,30 +147,32 @@ TEST_P(UnionOf, EllipsesIsDrawnUniformly) {
 INSTANTIATE_TEST_SUITE_P(Costs, UnionOf, ::testing::Values(2.15, 2.6, 4.5, 30.0));
 
 /// The first value is an angle: a pair across the seam, one half a turn apart, overlapping ones, and equal ends.
-GraspEnds ellipses_around() {
+GraspEnds ellipses_around(const VectorXd& weights) {
   std::vector<GraspCandidate> all{candidate({Vector2d(2.8, 0.2)}, {Vector2d(-2.6, -0.1)}),
                                   candidate({Vector2d(-1.4, -1)}, {Vector2d(1.8, -1)}),
                                   candidate({Vector2d(2.5, 0), Vector2d(3, 0.8)}, {Vector2d(-2.9, 0.3)}, 0.2),
                                   candidate({Vector2d(0.3, 1.2)}, {Vector2d(0.3, 1.2)}, 1.0)};
-  for (GraspCandidate& each : all) each.metric = JointMetric({true, false});
+  for (GraspCandidate& each : all) each.metric = JointMetric({true, false}, weights);
   return GraspEnds(all);
 }
 
-bool in_ellipses_around(const Vector2d& q, double c) {
+bool in_ellipses_around(const Vector2d& q, double c, const VectorXd& weights) {
   const auto through = [&](const Vector2d& a, const Vector2d& b) {
     const std::vector<bool> wraps{true, false};
-    return test::distance_around(wraps, a, q) + test::distance_around(wraps, q, b);
+    return test::distance_around(wraps, a, q, weights) + test::distance_around(wraps, q, b, weights);
   };
   return through({2.8, 0.2}, {-2.6, -0.1}) < c || through({-1.4, -1}, {1.8, -1}) < c ||
          through({2.5, 0}, {-2.9, 0.3}) + 0.2 < c || through({3, 0.8}, {-2.9, 0.3}) + 0.2 < c ||
          through({0.3, 1.2}, {0.3, 1.2}) + 1 < c;
 }
 
-class UnionAround : public ::testing::TestWithParam<double> {};
+/// The cost to beat, and the weights of both values.
+class UnionAround : public ::testing::TestWithParam<std::tuple<double, double, double>> {};
 
 TEST_P(UnionAround, TheSeamIsDrawnUniformly) {
-  const double c = GetParam();
-  const GraspEnds ends = ellipses_around();
+  const double c = std::get<0>(GetParam());
+  const Vector2d weights(std::get<1>(GetParam()), std::get<2>(GetParam()));
+  const GraspEnds ends = ellipses_around(weights == Vector2d(1, 1) ? VectorXd() : VectorXd(weights));
   Cells cells;
   cells.lower = Vector2d(-kPi, -2);
   cells.upper = Vector2d(kPi, 2);
@@ -187,18 +190,21 @@ TEST_P(UnionAround, TheSeamIsDrawnUniformly) {
     ++counts[std::min(cells.cell(q.data()), Cells::kSide * Cells::kSide - 1)];
     if (std::abs(q[0]) > 2.9) ++beyond[q[0] > 0];
   }
-  const auto shares = cells.shares([&](const Vector2d& q) { return in_ellipses_around(q, c); });
+  const auto shares = cells.shares([&](const Vector2d& q) { return in_ellipses_around(q, c, weights); });
   const auto [statistic, bound] = chi_squared(shares, counts);
   EXPECT_LT(statistic, bound);
   EXPECT_GT(std::min(beyond[0], beyond[1]), 1000);
   double area = 0, all = 0;
   for (const double share : shares) area += share, all += 1600;
   // The sum over the images of the ellipses, or the whole of the bounds: never less than the union.
-  EXPECT_GE(drawn.volume() * (1 + 1e-3), area / all * 8 * kPi);
+  EXPECT_GE(drawn.volume() * (1 + 1e-3), area / all * 8 * kPi * weights.prod());
 }
 
 // Below half a turn; where both ways round to the goal have an ellipse (they overlap); nearly everything.
-INSTANTIATE_TEST_SUITE_P(Costs, UnionAround, ::testing::Values(1.2, 3.4, 4.6, 6.4));
+INSTANTIATE_TEST_SUITE_P(Costs, UnionAround,
+                         ::testing::Values(std::tuple(1.2, 1, 1), std::tuple(3.4, 1, 1), std::tuple(4.6, 1, 1),
+                                           std::tuple(6.4, 1, 1), std::tuple(1.3, 0.8, 1.5), std::tuple(4.6, 0.8, 1.5),
+                                           std::tuple(6.4, 1.5, 0.4)));
 
 TEST(InformedUnion, ThePrintedCrossRadiusWouldBeWrong) {
   // One ellipse: mean square across the long axis is (c^2 - c_min^2) / 4 / (d + 2) in d dimensions; with the printed

@@ -296,7 +296,8 @@ TEST(ManipulationStages, SayWhatTheyFoundAndWhen) {
   EXPECT_EQ(stages_of().front(), PlanStage::first_grasps);
   options.planner = "rrt_star_mg";
   options.first_grasps = 0;
-  EXPECT_EQ(stages_of(), std::vector<PlanStage>{PlanStage::trees});
+  // The last pass over the trees' path removes a waypoint, which makes it a little shorter.
+  EXPECT_EQ(stages_of(), (std::vector<PlanStage>{PlanStage::trees, PlanStage::shortening}));
   problem.world = World{};
   for (const std::string& planner : manipulation_planner_names()) {
     options.planner = planner;

@@ -28,12 +28,14 @@ RoadmapOptions with(int vertices, int neighbours) {
 /// Pairs by enumeration.
 std::set<std::pair<int, int>> all_pairs(const Roadmap& roadmap, int neighbours, double radius) {
   const std::vector<bool>& wraps = roadmap.group().wraps();
+  const Eigen::VectorXd weights = roadmap.options().joint_weights.values;
   std::set<std::pair<int, int>> pairs;
   for (int a = 0; a < roadmap.size(); ++a) {
     std::vector<std::pair<double, int>> others;
     for (int b = 0; b < roadmap.size(); ++b)
       if (b != a)
-        others.emplace_back(test::distance_around(wraps, roadmap.vertices().col(a), roadmap.vertices().col(b)), b);
+        others.emplace_back(test::distance_around(wraps, roadmap.vertices().col(a), roadmap.vertices().col(b), weights),
+                            b);
     std::sort(others.begin(), others.end());
     for (std::size_t i = 0; i < others.size(); ++i)
       if (neighbours > 0 ? i < static_cast<std::size_t>(neighbours) : others[i].first <= radius)
@@ -49,8 +51,11 @@ TEST(Roadmap, JoinsEachPairOnceAndInOrder) {
     RoadmapOptions within_radius = with(300, 0);
     within_radius.gamma = 5;
     const int by_theory = 21;  // e (1 + 1/3) log 300 = 20.67
+    RoadmapOptions weighted = within_radius, nearest_weighted = with(300, 5);
+    weighted.joint_weights = nearest_weighted.joint_weights = Eigen::VectorXd(Eigen::Vector3d(2, 0.5, 1));
     for (const auto& [options, neighbours] :
-         {std::pair(within_radius, 0), std::pair(with(300, 5), 5), std::pair(with(300, 0), by_theory)}) {
+         {std::pair(within_radius, 0), std::pair(with(300, 5), 5), std::pair(with(300, 0), by_theory),
+          std::pair(weighted, 0), std::pair(nearest_weighted, 5)}) {
       const Roadmap roadmap = Roadmap::build(group, options);
       EXPECT_EQ(roadmap.statistics().neighbours, neighbours);
       const std::set<std::pair<int, int>> expected = all_pairs(roadmap, neighbours, roadmap.radius());
@@ -60,7 +65,8 @@ TEST(Roadmap, JoinsEachPairOnceAndInOrder) {
       for (int v = 0; v < roadmap.size(); ++v)
         for (const Roadmap::Arc* arc = roadmap.begin(v); arc != roadmap.end(v); ++arc)
           EXPECT_NEAR(arc->length,
-                      test::distance_around(group.wraps(), roadmap.vertices().col(v), roadmap.vertices().col(arc->to)),
+                      test::distance_around(group.wraps(), roadmap.vertices().col(v), roadmap.vertices().col(arc->to),
+                                            options.joint_weights.values),
                       1e-12);
     }
   }

@@ -34,6 +34,7 @@ struct Scene {
   bool wrist;
   int samples;
   unsigned seeds;
+  double share = 0.01;  ///< Above the optimum, at most.
 };
 
 std::ostream& operator<<(std::ostream& out, const Scene& scene) {
@@ -47,21 +48,22 @@ TEST_P(RrtStarMgConverges, ToTheExactOptimum) {
   for (unsigned seed = 1; seed <= GetParam().seeds; ++seed) {
     const ManipulationResult result = plan_manipulation(scene.problem, tree_options(GetParam().samples, seed));
     ASSERT_TRUE(result.path) << "seed " << seed;
-    EXPECT_LT(result.cost, 1.01 * scene.optimum) << "seed " << seed;
+    EXPECT_LT(result.cost, (1 + GetParam().share) * scene.optimum) << "seed " << seed;
     EXPECT_GT(result.cost, (1 - kStepsShare) * scene.optimum) << "seed " << seed;
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, RrtStarMgConverges,
-                         ::testing::Values(Scene{"ThinWall", test::wall_with_door(0.002), false, 2000, 20},
-                                           Scene{"ThickWall", test::wall_with_door(0.08), false, 2000, 20},
-                                           Scene{"TwoWalls", test::two_walls(), false, 2000, 20},
-                                           Scene{"Boxes", test::boxes(), false, 2000, 20},
-                                           Scene{"ThinWallSixJoints", test::wall_with_door(0.002), true, 20000, 5},
-                                           Scene{"ThickWallSixJoints", test::wall_with_door(0.08), true, 20000, 5},
-                                           Scene{"TwoWallsSixJoints", test::two_walls(), true, 20000, 5},
-                                           Scene{"BoxesSixJoints", test::boxes(), true, 20000, 5}),
-                         [](const auto& info) { return std::string(info.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    Scenes, RrtStarMgConverges,
+    ::testing::Values(Scene{"ThinWall", test::wall_with_door(0.002), false, 2000, 20},
+                      Scene{"ThickWall", test::wall_with_door(0.08), false, 2000, 20},
+                      Scene{"TwoWalls", test::two_walls(), false, 2000, 20},
+                      Scene{"Boxes", test::boxes(), false, 2000, 20},
+                      Scene{"ThinWallSixJoints", test::wall_with_door(0.002), true, 5000, 20, 0.002},
+                      Scene{"ThickWallSixJoints", test::wall_with_door(0.08), true, 5000, 20, 0.002},
+                      Scene{"TwoWallsSixJoints", test::two_walls(), true, 5000, 20, 0.002},
+                      Scene{"BoxesSixJoints", test::boxes(), true, 20000, 5}),
+    [](const auto& info) { return std::string(info.param.name); });
 
 /// The cost after so many samples, from the reports of one run.
 std::vector<double> cost_curve(const ManipulationProblem& problem, const ManipulationOptions& options,

@@ -68,11 +68,15 @@ TEST(TreeIndex, AnswersAsAScanOfAllPointsDoes) {
 }
 
 TEST(TreeIndex, FindsWhatLiesBeyondTheSeamOfAnAngle) {
-  for (const std::vector<bool>& wraps :
-       {std::vector<bool>{true}, {true, true}, {true, false, true}, {true, true, true, true, false, true}}) {
+  using Case = std::pair<std::vector<bool>, std::vector<double>>;
+  for (const auto& [wraps, weighing] :
+       {Case{{true}, {}}, Case{{true, true}, {}}, Case{{true, false, true}, {}},
+        Case{{true, true, true, true, false, true}, {}}, Case{{true}, {0.3}}, Case{{true, false, true}, {0.5, 1.5, 1}},
+        Case{{false, false}, {0.4, 1.6}}, Case{{true, false, true, false}, {1.3, 0.2, 0.6, 1}}}) {
     const auto d = static_cast<Eigen::Index>(wraps.size());
+    const VectorXd weights = Eigen::Map<const VectorXd>(weighing.data(), static_cast<Eigen::Index>(weighing.size()));
     Rng rng(static_cast<unsigned>(d));
-    TreeIndex index(static_cast<int>(d), JointMetric(wraps));
+    TreeIndex index(static_cast<int>(d), JointMetric(wraps, weights));
     std::vector<VectorXd> points;
     // In any turn.
     const VectorXd lower = VectorXd::Constant(d, -9), upper = -lower;
@@ -89,9 +93,9 @@ TEST(TreeIndex, FindsWhatLiesBeyondTheSeamOfAnAngle) {
       double least = 1e9, straight = 1e9;
       std::set<int> expected, found;
       for (std::size_t p = 0; p < points.size(); ++p) {
-        const double distance = test::distance_around(wraps, points[p], at);
+        const double distance = test::distance_around(wraps, points[p], at, weights);
         least = std::min(least, distance);
-        straight = std::min(straight, (points[p] - at).norm());
+        straight = std::min(straight, test::distance_around(std::vector<bool>(d), points[p], at, weights));
         if (distance < 0.3) expected.insert(static_cast<int>(p));
       }
       double squared;
@@ -99,15 +103,15 @@ TEST(TreeIndex, FindsWhatLiesBeyondTheSeamOfAnAngle) {
           at.data(), [](int) { return true; }, squared);
       ASSERT_GE(nearest, 0);
       EXPECT_NEAR(std::sqrt(squared), least, 1e-12);
-      EXPECT_NEAR(test::distance_around(wraps, points[nearest], at), least, 1e-12);
+      EXPECT_NEAR(test::distance_around(wraps, points[nearest], at, weights), least, 1e-12);
       beyond += least < straight - 1e-9;
       index.within(at.data(), 0.3, [&](int id, double found_squared) {
-        EXPECT_NEAR(test::distance_around(wraps, points[id], at), std::sqrt(found_squared), 1e-12);
+        EXPECT_NEAR(test::distance_around(wraps, points[id], at, weights), std::sqrt(found_squared), 1e-12);
         EXPECT_TRUE(found.insert(id).second);
       });
       EXPECT_EQ(found, expected);
     }
-    EXPECT_GT(beyond, 50);
+    EXPECT_GT(beyond, wraps[0] ? 50 : -1);
   }
 }
 

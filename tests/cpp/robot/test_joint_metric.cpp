@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "mmgrasp/core/random.hpp"
 #include "support/around.hpp"
 
@@ -44,6 +46,40 @@ TEST(JointMetric, IsEuclideanWhereNothingWraps) {
     EXPECT_EQ(metric.distance(a, b), (a - b).norm());
     EXPECT_EQ(metric.nearest(a, b), b);
     EXPECT_EQ(metric.wrapped(b), b);
+  }
+}
+
+TEST(JointMetric, WeighsJoints) {
+  const Eigen::Vector4d weights(10, 0.5, 2, 1);
+  EXPECT_EQ(JointMetric().unit(), 1);
+  EXPECT_EQ(JointMetric(kWraps).weight(2), 1);
+  for (const std::vector<bool>& wraps : {kWraps, std::vector<bool>(4)}) {
+    const JointMetric metric(wraps, weights), doubled(wraps, 2 * weights);
+    EXPECT_NEAR(metric.unit(), std::sqrt((100 + 0.25 + 4 + 1) / 4), 1e-12);
+    Rng rng(4);
+    const VectorXd lower = VectorXd::Constant(4, -12), upper = -lower;
+    for (int i = 0; i < 500; ++i) {
+      const VectorXd a = rng.uniform(lower, upper), b = rng.uniform(lower, upper), c = rng.uniform(lower, upper);
+      const double distance = test::distance_around(wraps, a, b, weights);
+      EXPECT_NEAR(metric.distance(a, b), distance, 1e-11);
+      EXPECT_NEAR(metric.squared_distance(a.data(), b.data(), 4), distance * distance, 1e-9);
+      EXPECT_EQ(doubled.distance(a, b), 2 * metric.distance(a, b));
+      EXPECT_LE(metric.distance(a, c), metric.distance(a, b) + metric.distance(b, c) + 1e-11);
+      EXPECT_NEAR(metric.norm(metric.nearest(a, b) - a), distance, 1e-11);
+      EXPECT_NEAR(metric.length({a, b, c}),
+                  test::distance_around(std::vector<bool>(4), a, b, weights) +
+                      test::distance_around(std::vector<bool>(4), b, c, weights),
+                  1e-11);
+      // Euclidean in coordinates, up to the turns that metric.turn() gives.
+      VectorXd x(4), y(4), back(4);
+      metric.to_coordinates(a.data(), x.data(), 4);
+      metric.to_coordinates(b.data(), y.data(), 4);
+      VectorXd off = y - x;
+      for (const int k : metric.wrapping()) off[k] -= metric.turn(k) * std::round(off[k] / metric.turn(k));
+      EXPECT_NEAR(off.norm(), distance, 1e-11);
+      metric.from_coordinates(x.data(), back.data(), 4);
+      EXPECT_NEAR((back - metric.wrapped(a)).norm(), 0, 1e-12);
+    }
   }
 }
 

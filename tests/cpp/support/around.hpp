@@ -16,9 +16,13 @@ inline Eigen::VectorXd nearest_image(const std::vector<bool>& wraps, const Eigen
   return best;
 }
 
-/// Distance the short way round in the values that wrap.
-inline double distance_around(const std::vector<bool>& wraps, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
-  return (nearest_image(wraps, a, b) - a).norm();
+/// Distance the short way round in the values that wrap; `weights`, unless empty, scale the values.
+inline double distance_around(const std::vector<bool>& wraps, const Eigen::VectorXd& a, const Eigen::VectorXd& b,
+                              const Eigen::VectorXd& weights = {}) {
+  double sum = 0;
+  const Eigen::VectorXd off = nearest_image(wraps, a, b) - a;
+  for (Eigen::Index i = 0; i < off.size(); ++i) sum += std::pow((weights.size() > 0 ? weights[i] : 1) * off[i], 2);
+  return std::sqrt(sum);
 }
 
 }  // namespace mmgrasp::test

@@ -69,8 +69,10 @@ inline bool crosses(const Rectangle& r, const Eigen::Vector2d& a, const Eigen::V
   return first < last;
 }
 
-/// Length of the shortest path of a point, by Dijkstra over the visibility graph of the rectangles' corners.
-inline double shortest(const std::vector<Rectangle>& walls, const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
+/// Length of the shortest path of a point, by Dijkstra over the visibility graph of the rectangles' corners; `weights`
+/// scale x and y.
+inline double shortest(const std::vector<Rectangle>& walls, const Eigen::Vector2d& from, const Eigen::Vector2d& to,
+                       const Eigen::Vector2d& weights) {
   std::vector<Eigen::Vector2d> points{from, to};
   for (const Rectangle& r : walls)
     for (const double x : {r.low_x, r.high_x})
@@ -88,14 +90,16 @@ inline double shortest(const std::vector<Rectangle>& walls, const Eigen::Vector2
     for (std::size_t i = 0; i < points.size(); ++i) {
       const bool blocked = std::any_of(walls.begin(), walls.end(),
                                        [&](const Rectangle& r) { return crosses(r, points[next], points[i]); });
-      if (!blocked) distance[i] = std::min(distance[i], distance[next] + (points[i] - points[next]).norm());
+      if (!blocked)
+        distance[i] = std::min(distance[i], distance[next] + (points[i] - points[next]).cwiseProduct(weights).norm());
     }
   }
 }
 
 }  // namespace gantry_walls
 
-inline GantryWalls gantry_walls_problem(const std::vector<Rectangle>& walls, bool wrist) {
+inline GantryWalls gantry_walls_problem(const std::vector<Rectangle>& walls, bool wrist,
+                                        const Eigen::VectorXd& joint_weights = {}) {
   using namespace gantry_walls;
   const JointGroup group = Robot::from_strings(urdf(wrist), "").chain("frame", wrist ? "hand" : "stage");
   Eigen::VectorXd start(group.size()), goal(group.size());
@@ -117,8 +121,9 @@ inline GantryWalls gantry_walls_problem(const std::vector<Rectangle>& walls, boo
                       T);
     grown.push_back({r.low_x - kHalfCube, r.high_x + kHalfCube, r.low_y - kHalfCube, r.high_y + kHalfCube});
   }
-  const double planar = shortest(grown, start.head<2>(), goal.head<2>());
-  return {problem, std::hypot(planar, (goal - start).tail(group.size() - 2).norm())};
+  const Eigen::VectorXd weights = joint_weights.size() > 0 ? joint_weights : Eigen::VectorXd::Ones(group.size());
+  const double planar = shortest(grown, start.head<2>(), goal.head<2>(), weights.head<2>());
+  return {problem, std::hypot(planar, (goal - start).cwiseProduct(weights).tail(group.size() - 2).norm())};
 }
 
 /// A wall of this thickness across the gantry with a door.

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "mmgrasp/collision/checker.hpp"
 #include "mmgrasp/collision/edge.hpp"
 #include "mmgrasp/collision/world.hpp"
 #include "mmgrasp/core/export.hpp"
@@ -18,6 +19,7 @@
 #include "mmgrasp/plan/rrt_star_mg.hpp"
 #include "mmgrasp/robot/ik.hpp"
 #include "mmgrasp/robot/joint_group.hpp"
+#include "mmgrasp/robot/joint_weights.hpp"
 #include "mmgrasp/robot/trajectory.hpp"
 
 namespace mmgrasp {
@@ -71,6 +73,9 @@ struct MMGRASP_EXPORT ManipulationOptions {
   /// when the roadmap would join them, and by trees.
   bool straight = true;
   EdgeOptions edge{0.02, 0.005, false, 1e-4};  ///< Steps of edge checks.
+  /// What a motion of each joint costs, in the path's length and wherever a planner measures distances; also for the
+  /// roadmap that is built.
+  JointWeights joint_weights;
   IkOptions ik;
   /// Above zero the grasps' costs decide: of the grasps with which a path no longer than this was found, the answer has
   /// the one of least cost. Zero: length and cost count together. For pipes whose grasps cost their sag, the one that
@@ -131,7 +136,7 @@ struct MMGRASP_EXPORT ManipulationResult {
   Outcome outcome = Outcome::timeout;
   int grasp_index = -1;
   std::optional<JointPath> path;  ///< Set if and only if solved; checked again at 0.005 rad with the object in hand.
-  double cost = 0;                ///< Path length plus the grasp's cost.
+  double cost = 0;                ///< Path length, weighted by the joints, plus the grasp's cost.
   /// No path with any grasp costs less, whoever plans it. The least straight line between arm postures, in any of their
   /// whole turns and angles without limits the short way round, where every posture was listed (closed forms of six
   /// joints with `ik_solutions` enough for all branches); else no more than what the tool's way takes with every joint
@@ -155,10 +160,13 @@ struct MMGRASP_EXPORT ManipulationResult {
 ///
 /// Every grasp is checked, unless the time limit, the cancel token or `goal_cost` ends the run. No grasp reachable at
 /// the start: invalid_start; at the goal: invalid_goal; `rejections` and `grasps` say why. With `roadmap` no other is
-/// built; it must be of the same robot and joints. `on_improvement` is called with every better solution.
+/// built; it must be of the same robot, joints and weights. `on_improvement` is called with every better solution.
+/// `checker`: a prepared checker of the problem's group and world, whose options then hold for all checks; throws
+/// InvalidInput that says what differs when it is of others, or leaves out the robot itself (attached_only).
 MMGRASP_EXPORT ManipulationResult plan_manipulation(const ManipulationProblem& problem,
                                                     const ManipulationOptions& options = {},
                                                     const Roadmap* roadmap = nullptr, const Monitor& monitor = {},
-                                                    const ImprovementCallback& on_improvement = {});
+                                                    const ImprovementCallback& on_improvement = {},
+                                                    const CollisionChecker* checker = nullptr);
 
 }  // namespace mmgrasp

@@ -11,6 +11,7 @@
 #include "mmgrasp/core/monitor.hpp"
 #include "mmgrasp/core/outcome.hpp"
 #include "mmgrasp/plan/improvement.hpp"
+#include "mmgrasp/robot/joint_weights.hpp"
 #include "mmgrasp/robot/trajectory.hpp"
 
 namespace mmgrasp {
@@ -29,7 +30,10 @@ struct MMGRASP_EXPORT MotionOptions {
   double time_limit = 5.0;              ///< Wall-clock cap [s]; > 0.
   /// Budget in states drawn (rounds, where a planner draws none); > 0. Ends a run reproducibly.
   int max_iterations = 20000;
-  /// Longest tree edge [rad]; 0: a share of the diagonal of the sampling bounds (RRT-Connect 1/20, others 1/5).
+  /// What a motion of each joint costs, in the path's length and wherever a planner measures distances.
+  JointWeights joint_weights;
+  /// Longest tree edge [rad or m, times the root mean square of the weights]; 0: a share of the diagonal of the
+  /// sampling bounds (RRT-Connect 1/20, others 1/5).
   double range = 0.0;
   /// Chance that a roadmap planner (prm, prm_star, lazy_prm_star) draws a state around the start or a goal, which are
   /// hardly joined otherwise; 0: uniform draws alone, as OMPL has them; in [0, 1).
@@ -66,7 +70,7 @@ struct MMGRASP_EXPORT MotionResult {
   /// improving (PRM*, RRT* and their like). Has at least two waypoints, the first is the start. Values that wrap run on
   /// continuously, so that the last waypoint equals its goal up to full turns of these.
   std::optional<JointPath> path;
-  double cost = 0;                ///< The path's length.
+  double cost = 0;                ///< The path's length, weighted by the joints.
   int goal_index = -1;            ///< Which of the goals the path reaches.
   std::vector<Contact> contacts;  ///< With invalid_start or invalid_goal: what touches.
   /// Why the start, or goals, were rejected; grasp_filter counts those outside the orientation constraint.

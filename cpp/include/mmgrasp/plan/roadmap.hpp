@@ -8,19 +8,22 @@
 #include "mmgrasp/core/export.hpp"
 #include "mmgrasp/core/monitor.hpp"
 #include "mmgrasp/robot/joint_group.hpp"
+#include "mmgrasp/robot/joint_weights.hpp"
 
 namespace mmgrasp {
 
 /// How many configurations a roadmap draws, and which of them it joins.
 struct MMGRASP_EXPORT RoadmapOptions {
   int vertices = 5000;  ///< Configurations drawn; in [2, 10 million].
-  /// > 0: vertices nearer than gamma (log n / n)^(1/d) are joined (P2 4.3.2.1, which takes 4) [rad or m]. 0: each
+  /// > 0: vertices nearer than gamma (log n / n)^(1/d) are joined (P2 4.3.2.1, which takes 4) [rad or m,
+  /// times the root mean square of the weights]. 0: each
   /// vertex is joined with its k nearest ones, k = e (1 + 1/d) log n rounded up (k-nearest PRM*, Karaman and Frazzoli
   /// 2011), which needs no scale and holds together on every robot; >= 0.
   double gamma = 0;
   /// > 0: each vertex is joined with that many nearest ones, and gamma does not count.
   int neighbours = 0;
-  unsigned seed = 1;  ///< Same seed, same roadmap.
+  JointWeights joint_weights;  ///< What a motion of each joint counts in the lengths of edges.
+  unsigned seed = 1;           ///< Same seed, same roadmap.
   void check() const;
 };
 
@@ -31,8 +34,8 @@ struct MMGRASP_EXPORT RoadmapStatistics {
   int largest_component = 0;  ///< Vertices in the largest one.
   int neighbours = 0;         ///< Nearest vertices that each is joined with; 0: all within the radius.
   double radius = 0;          ///< Connection radius; with nearest neighbours the longest edge.
-  double volume = 0;          ///< Volume of the sampling bounds.
-  double gamma_star = 0;      ///< PRM* asks for gamma > 2 (1 + 1/d)^(1/d) (volume / unit ball)^(1/d).
+  double volume = 0;          ///< Volume of the sampling bounds, sides times the weights.
+  double gamma_star = 0;      ///< PRM* asks for gamma > 2 (1 + 1/d)^(1/d) (volume / unit ball)^(1/d); in its unit.
 };
 
 /// A probabilistic roadmap without collision checks (P2 4.3.2.1, Algorithm 4.1): configurations of a group drawn within
@@ -43,8 +46,8 @@ struct MMGRASP_EXPORT RoadmapStatistics {
 ///     roadmap.save("arm.roadmap");  // later: Roadmap::load("arm.roadmap", arm)
 ///     const ManipulationResult result = plan_manipulation(problem, {}, &roadmap);
 ///
-/// Angles are not wrapped. Immutable; cheap to copy, safe to share between threads. Vertex i is the same for every
-/// number of vertices: a larger roadmap contains a smaller one's vertices.
+/// Angles without limits are joined the short way round. Immutable; cheap to copy, safe to share between threads.
+/// Vertex i is the same for every number of vertices: a larger roadmap contains a smaller one's vertices.
 class MMGRASP_EXPORT Roadmap {
  public:
   /// One end of an edge as seen from the other.

@@ -11,9 +11,11 @@ namespace mmgrasp {
 struct MMGRASP_EXPORT RrtStarMgOptions {
   /// Budget in samples, drawn or reassigned to another grasp; in [1, 10 million].
   int max_iterations = 1000;
-  /// Longest edge grown towards a sample (P2's eta), and longest connection radius [rad or m]; > 0.
+  /// Longest edge grown towards a sample (P2's eta), and longest connection radius [rad or m, times the root mean
+  /// square of the joints' weights]; > 0.
   double range = 1.5;
-  /// > 0: vertices nearer than gamma (log n / n)^(1/(d+1)) are joined, at most `range`. 0: all within the radius that
+  /// > 0: vertices nearer than gamma (log n / n)^(1/(d+1)) are joined, at most `range`, in the same
+  /// unit. 0: all within the radius that
   /// would hold k = (d + 1) / 2 n^(1/(d+1)) log n of n vertices spread evenly in the informed set, and the k nearest at
   /// least.
   double gamma = 0;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "mmgrasp/collision/checker.hpp"
 #include "mmgrasp/collision/world.hpp"
 #include "mmgrasp/core/export.hpp"
 #include "mmgrasp/core/monitor.hpp"
@@ -129,6 +130,12 @@ MMGRASP_EXPORT RobotMotion drive_by_motion(const DriveByResult& result, const st
 ///   if (result.usable()) std::cout << result.duration() << " s\n";
 /// @endcode
 MMGRASP_EXPORT DriveByResult plan_drive_by(const JointGroup& group, const World& world, const Eigen::VectorXd& start,
+                                           const std::vector<DriveByTask>& tasks, const DriveByGoal& goal,
+                                           const DriveByOptions& options = {}, const Monitor& monitor = {});
+
+/// The same with a prepared checker in place of group and world; its options hold for all checks of configurations and
+/// ways. The answer is that of a checker made here.
+MMGRASP_EXPORT DriveByResult plan_drive_by(const CollisionChecker& checker, const Eigen::VectorXd& start,
                                            const std::vector<DriveByTask>& tasks, const DriveByGoal& goal,
                                            const DriveByOptions& options = {}, const Monitor& monitor = {});
 

@@ -16,7 +16,7 @@ namespace mmgrasp::detail {
 /// planner finds none short enough with it and all the cheaper ones together.
 ManipulationResult plan_least_grasp_cost(const ManipulationProblem& problem, const ManipulationOptions& options,
                                          const Roadmap* roadmap, const Monitor& monitor,
-                                         const ImprovementCallback& on_improvement) {
+                                         const ImprovementCallback& on_improvement, const CollisionChecker* checker) {
   problem.check();
   options.check();
   const Stopwatch clock;
@@ -33,11 +33,11 @@ ManipulationResult plan_least_grasp_cost(const ManipulationProblem& problem, con
   std::optional<Roadmap> built;
   for (bool first = true; !left.grasps.empty(); first = false) {
     if (!first && !roadmap && options.planner == "prm_star_mg") {
-      built = Roadmap::build(problem.group, options.prm.roadmap);
+      built = Roadmap::build(problem.group, roadmap_options(options));
       roadmap = &*built;
     }
     ManipulationResult found =
-        plan_manipulation_with(manipulation_planner(options.planner), left, pass, roadmap, monitor, {});
+        plan_manipulation_with(manipulation_planner(options.planner), left, pass, roadmap, monitor, {}, checker);
     const bool good = found.path && found.cost <= options.max_length;
     if (first) {
       best = found;

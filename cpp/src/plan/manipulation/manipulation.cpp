@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <string>
 
+#include "mmgrasp/collision/detail/checker_difference.hpp"
 #include "mmgrasp/core/detail/near_name.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/parallel.hpp"
@@ -29,12 +31,31 @@ std::string listed(const std::vector<std::string>& names) {
   return out;
 }
 
-void check_roadmap(const JointGroup& own, const JointGroup& group) {
-  if (detail::kinematics_key(own) == detail::kinematics_key(group)) return;
+std::string listed(const Eigen::VectorXd& weights) {
+  std::ostringstream out;
+  for (Eigen::Index i = 0; i < weights.size(); ++i) out << (i > 0 ? ", " : "") << weights[i];
+  return weights.size() > 0 ? "joint_weights " + out.str() : "all joint_weights 1";
+}
+
+void check_roadmap(const Roadmap& roadmap, const JointGroup& group, const detail::JointMetric& metric) {
+  const JointGroup& own = roadmap.group();
+  if (detail::kinematics_key(own) == detail::kinematics_key(group)) {
+    const Eigen::VectorXd weights = roadmap.options().joint_weights.of(own);
+    if (weights.size() == metric.weights().size() && weights == metric.weights()) return;
+    throw InvalidInput("roadmap: was built with " + listed(weights) + ", not with " + listed(metric.weights()));
+  }
   const std::string given = listed(own.names()), wanted = listed(group.names());
   throw InvalidInput("roadmap: was built for another robot or other joints than the problem's group: " +
                      (given == wanted ? "joints of the robot have other origins, axes or limits"
                                       : "for " + given + ", not for " + wanted));
+}
+
+void check_checker(const CollisionChecker& checker, const ManipulationProblem& problem) {
+  World world = problem.world;
+  world.forget(problem.object_name);  // No checker without the object knows of it.
+  const std::string why = detail::checker_difference(checker, problem.group, world);
+  if (!why.empty()) throw InvalidInput("checker: is not of the problem's group and world: " + why);
+  require(!checker.options().attached_only, "checker: attached_only", "true", "must check the robot itself, too");
 }
 
 Outcome outcome_of(const detail::ManipulationInput& input, bool exhausted, const ManipulationResult& result) {
@@ -109,6 +130,8 @@ void ManipulationOptions::check() const {
   require(time_limit > 0, "time_limit", time_limit, "must be > 0 [s]");
   require(std::isfinite(max_length) && max_length >= 0, "max_length", max_length, "must be finite and >= 0");
   require(max_length == 0 || !(rrt.goal_cost > 0), "goal_cost", rrt.goal_cost, "must be left out with max_length");
+  require(prm.roadmap.joint_weights.empty(), "prm.roadmap.joint_weights", "given",
+          "must be left out: joint_weights of all hold");
   edge.check();
   ik.check();
   prm.check();
@@ -118,15 +141,18 @@ void ManipulationOptions::check() const {
 ManipulationResult detail::plan_manipulation_with(const ManipulationPlanner& planner,
                                                   const ManipulationProblem& problem,
                                                   const ManipulationOptions& options, const Roadmap* roadmap,
-                                                  const Monitor& monitor, const ImprovementCallback& on_improvement) {
+                                                  const Monitor& monitor, const ImprovementCallback& on_improvement,
+                                                  const CollisionChecker* checker) {
   problem.check();
   options.check();
-  if (roadmap) check_roadmap(roadmap->group(), problem.group);
+  if (checker) check_checker(*checker, problem);
+  const JointMetric metric(problem.group.wraps(), options.joint_weights.of(problem.group));
+  if (roadmap) check_roadmap(*roadmap, problem.group, metric);
   ManipulationResult result;
   Stopwatch clock;
-  TransferChecks checks(problem, options.edge, resolve_threads(options.threads));
-  GraspCandidates candidates(problem, options, checks, clock, monitor, result);
-  ManipulationInput input{problem, options, roadmap, checks, candidates, on_improvement, monitor, clock};
+  TransferChecks checks(problem, options.edge, resolve_threads(options.threads), checker);
+  GraspCandidates candidates(problem, options, metric, checks, clock, monitor, result);
+  ManipulationInput input{problem, options, metric, roadmap, checks, candidates, on_improvement, monitor, clock};
   const bool exhausted = planner.run(input, result);
   result.stats.search_seconds = clock.seconds() - result.stats.ik_seconds;
   for (const GraspReport& report : result.grasps) {
@@ -143,12 +169,12 @@ ManipulationResult detail::plan_manipulation_with(const ManipulationPlanner& pla
 
 ManipulationResult plan_manipulation(const ManipulationProblem& problem, const ManipulationOptions& options,
                                      const Roadmap* roadmap, const Monitor& monitor,
-                                     const ImprovementCallback& on_improvement) {
+                                     const ImprovementCallback& on_improvement, const CollisionChecker* checker) {
   if (options.max_length > 0) {
-    return detail::plan_least_grasp_cost(problem, options, roadmap, monitor, on_improvement);
+    return detail::plan_least_grasp_cost(problem, options, roadmap, monitor, on_improvement, checker);
   }
   return detail::plan_manipulation_with(detail::manipulation_planner(options.planner), problem, options, roadmap,
-                                        monitor, on_improvement);
+                                        monitor, on_improvement, checker);
 }
 
 }  // namespace mmgrasp

@@ -2,13 +2,11 @@
 
 #include <cmath>
 #include <limits>
-
-#include "mmgrasp/core/detail/numbers.hpp"
+#include <utility>
 
 namespace mmgrasp::detail {
 
-ConfigurationTree::ConfigurationTree(std::vector<bool> wraps)
-    : size_(static_cast<Eigen::Index>(wraps.size())), wraps_(std::move(wraps)) {}
+ConfigurationTree::ConfigurationTree(Eigen::Index size, JointMetric metric) : size_(size), metric_(std::move(metric)) {}
 
 int ConfigurationTree::add(const Eigen::VectorXd& q, int parent) {
   const int node = size();
@@ -16,7 +14,7 @@ int ConfigurationTree::add(const Eigen::VectorXd& q, int parent) {
   const std::size_t stride = size_ * kRow;
   if (lane == 0) rows_.resize(rows_.size() + stride, 1e15f);
   for (Eigen::Index i = 0; i < size_; ++i) {
-    rows_[block * stride + i * kRow + lane] = static_cast<float>(q[i]);
+    rows_[block * stride + i * kRow + lane] = static_cast<float>(metric_.weight(static_cast<int>(i)) * q[i]);
   }
   values_.insert(values_.end(), q.data(), q.data() + size_);
   parents_.push_back(parent);
@@ -24,7 +22,6 @@ int ConfigurationTree::add(const Eigen::VectorXd& q, int parent) {
 }
 
 int ConfigurationTree::nearest(const Eigen::VectorXd& q) const {
-  constexpr float kTurn = static_cast<float>(kTwoPi);
   const std::size_t stride = size_ * kRow;
   const float* row = rows_.data();
   // One running minimum a lane: no comparison across lanes before the end.
@@ -38,12 +35,14 @@ int ConfigurationTree::nearest(const Eigen::VectorXd& q) const {
   for (int block = 0; block < blocks; ++block, row += stride) {
     float sum[kRow] = {};
     for (Eigen::Index i = 0; i < size_; ++i) {
-      const float value = static_cast<float>(q[i]);
+      const int joint = static_cast<int>(i);
+      const float value = static_cast<float>(metric_.weight(joint) * q[i]);
       const float* entry = row + i * kRow;
-      if (wraps_[i]) {
+      if (metric_.wraps(joint)) {
+        const float turn = static_cast<float>(metric_.turn(joint));
         for (int k = 0; k < kRow; ++k) {
           const float apart = std::abs(entry[k] - value);
-          const float round = std::abs(kTurn - apart);
+          const float round = std::abs(turn - apart);
           const float least = apart < round ? apart : round;
           sum[k] += least * least;
         }

@@ -3,17 +3,19 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "mmgrasp/robot/detail/joint_metric.hpp"
+
 namespace mmgrasp::detail {
 
-/// Configurations with parents and a nearest-neighbour search by scanning all of them: values are also stored in single
-/// precision, eight configurations interleaved, so that a scan is a stream of vector instructions. Up to some ten
-/// thousand configurations that is faster than a k-d tree.
+/// Configurations with parents and a nearest-neighbour search by scanning all of them: coordinates of the metric are
+/// also stored in single precision, eight configurations interleaved, so that a scan is a stream of vector
+/// instructions. Up to some ten thousand configurations that is faster than a k-d tree.
 class ConfigurationTree {
  public:
-  /// `wraps`: values in [-pi, pi] that are compared the short way round.
-  explicit ConfigurationTree(std::vector<bool> wraps);
+  ConfigurationTree(Eigen::Index size, JointMetric metric);
 
   int size() const { return static_cast<int>(parents_.size()); }
+  /// Values that wrap lie in [-pi, pi].
   int add(const Eigen::VectorXd& q, int parent);
   /// The nearest by distances in single precision; the first of equals.
   int nearest(const Eigen::VectorXd& q) const;
@@ -26,7 +28,7 @@ class ConfigurationTree {
  private:
   static constexpr int kRow = 8;
   const Eigen::Index size_;
-  const std::vector<bool> wraps_;
+  const JointMetric metric_;
   std::vector<double> values_;
   std::vector<float> rows_;  ///< [block][value][kRow]; the unused end is far from everything.
   std::vector<int> parents_;

@@ -54,7 +54,7 @@ class MotionSearch {
                const MotionOptions& options, const Monitor& monitor)
       : checker_(checker),
         edges_(checker, options),
-        metric_(checker.group().wraps()),
+        metric_(edges_.metric()),
         start_(start),
         goals_(goals),
         options_(options),
@@ -125,7 +125,7 @@ class MotionSearch {
       JointPath path{{start_}};
       edges_.connect(start_, metric_.nearest(start_, goal.q), path.waypoints);
       if (!is_free(path)) continue;
-      result_.stats.length_before_shortening = path.length();
+      result_.stats.length_before_shortening = metric_.length(path.waypoints);
       finish(std::move(path));
       return true;
     }
@@ -141,7 +141,7 @@ class MotionSearch {
       if (!answer.solved) return end(answer.exhausted ? Outcome::not_found : Outcome::timeout);
       monitor_.report("plan motion", 0.6);
       const JointPath found = continuous(answer.waypoints);
-      result_.stats.length_before_shortening = found.length();
+      result_.stats.length_before_shortening = metric_.length(found.waypoints);
       if (options_.shorten && finish_shortened(found, resolution)) return;
       if (monitor_.stopped()) return end(Outcome::stopped);
       if (is_free(found)) {
@@ -158,7 +158,7 @@ class MotionSearch {
     query.lower = checker_.group().sample_lower();
     query.upper = checker_.group().sample_upper();
     if (checker_.group().has_base()) bound_base(query);
-    query.wraps = checker_.group().wraps();
+    query.metric = metric_;
     // Ends beyond a limit by less than the checker's slack are on it.
     const auto within = [&](const Eigen::VectorXd& q) -> Eigen::VectorXd {
       return metric_.wrapped(q).cwiseMax(query.lower).cwiseMin(query.upper);
@@ -169,7 +169,7 @@ class MotionSearch {
       query.goals.push_back(within(goal.q));
       query.turned_goals += goal.turned;
     }
-    query.range = options_.range;
+    query.range = options_.range * metric_.unit();
     query.near_end_probability = options_.near_end_probability;
     query.seed = options_.seed + 7919u * static_cast<unsigned>(round);
     query.max_iterations = options_.max_iterations;
@@ -188,7 +188,7 @@ class MotionSearch {
   }
 
   void report(const JointPath& path) {
-    const double cost = path.length();
+    const double cost = metric_.length(path.waypoints);
     if (!options_.on_improvement || cost >= best_reported_) return;
     best_reported_ = cost;
     options_.on_improvement({stopwatch_.seconds(), cost, -1, path});
@@ -266,7 +266,7 @@ class MotionSearch {
 
   void finish(JointPath path) {
     result_.goal_index = ends_[nearest_end(path.waypoints.back())].goal;
-    result_.cost = path.length();
+    result_.cost = metric_.length(path.waypoints);
     report(path);
     result_.path = std::move(path);
     end(Outcome::solved);
@@ -275,7 +275,7 @@ class MotionSearch {
 
   CollisionChecker& checker_;
   detail::MotionEdges edges_;
-  const detail::JointMetric metric_;
+  const detail::JointMetric& metric_;
   const Eigen::VectorXd& start_;
   const MotionGoals& goals_;
   const MotionOptions& options_;
@@ -337,6 +337,7 @@ MotionResult plan_motion_via(CollisionChecker& checker, const Eigen::VectorXd& s
   of_segment.on_improvement = {};  // reported for whole paths
   JointPath path{{start}};
   MotionStats stats;
+  double cost = 0;
   for (std::size_t segment = 0; segment <= via.size(); ++segment) {
     MotionGoals ends = goals;
     if (segment < via.size()) {
@@ -346,6 +347,7 @@ MotionResult plan_motion_via(CollisionChecker& checker, const Eigen::VectorXd& s
     of_segment.time_limit = std::max(1e-3, options.time_limit - stopwatch.seconds());
     MotionResult found = plan_motion_to(checker, path.waypoints.back(), ends, of_segment, monitor);
     stats.collision_queries += found.stats.collision_queries;
+    cost += found.cost;
     stats.length_before_shortening += found.stats.length_before_shortening;
     stats.seconds = stopwatch.seconds();
     found.stats = stats;
@@ -353,7 +355,7 @@ MotionResult plan_motion_via(CollisionChecker& checker, const Eigen::VectorXd& s
     if (!found.path) return found;
     path.waypoints.insert(path.waypoints.end(), found.path->waypoints.begin() + 1, found.path->waypoints.end());
     if (segment < via.size()) continue;
-    found.cost = path.length();
+    found.cost = cost;
     found.path = std::move(path);
     if (options.on_improvement) options.on_improvement({stats.seconds, found.cost, -1, *found.path});
     return found;

@@ -23,7 +23,7 @@ constexpr double kProjectionDamping = 1e-4;
 MotionEdges::MotionEdges(CollisionChecker& checker, const MotionOptions& options)
     : checker_(checker),
       group_(checker.group()),
-      metric_(group_.wraps()),
+      metric_(group_.wraps(), options.joint_weights.of(group_)),
       joint_step_(options.joint_step),
       workspace_step_(options.workspace_step),
       steered_(has_steered_base(group_)),

@@ -21,6 +21,7 @@ class MotionEdges {
   /// Edges turn on the spot and drive straight instead of moving all values at once.
   bool steered() const { return steered_; }
   bool constrained() const { return cone_.has_value(); }
+  const JointMetric& metric() const { return metric_; }
 
   bool is_free(const Eigen::VectorXd& q);
   /// The cause, with Rejection::grasp_filter for a tool outside its cone.

@@ -75,7 +75,9 @@ struct Session {
   Eigen::VectorXd a, b;
 
   explicit Session(const PlannerQuery& q) : query(q), a(q.start.size()), b(q.start.size()) {}
-  void load(const double* from, Eigen::VectorXd& to) { std::copy_n(from, to.size(), to.data()); }
+  void load(const double* coordinates, Eigen::VectorXd& to) {
+    query.metric.from_coordinates(coordinates, to.data(), static_cast<int>(to.size()));
+  }
 
   template <typename Function>
   int guarded(const Function& function) {
@@ -134,9 +136,11 @@ void fail(void* user, const char* message) {
   session(user).failure = message;
 }
 
-std::vector<double> flattened(const std::vector<Eigen::VectorXd>& rows) {
+/// Values one after the other, times the weights of their joints.
+std::vector<double> weighted(const JointMetric& metric, const std::vector<Eigen::VectorXd>& rows) {
   std::vector<double> flat;
-  for (const auto& row : rows) flat.insert(flat.end(), row.data(), row.data() + row.size());
+  for (const auto& row : rows)
+    for (Eigen::Index i = 0; i < row.size(); ++i) flat.push_back(metric.weight(static_cast<int>(i)) * row[i]);
   return flat;
 }
 
@@ -151,15 +155,18 @@ std::vector<OmplPlanner> ompl_planners() {
 
 PlannerAnswer solve_with_ompl(const PlannerQuery& query) {
   Session session(query);
-  const std::vector<double> goals = flattened(query.goals);
-  const std::vector<unsigned char> wraps(query.wraps.begin(), query.wraps.end());
+  const JointMetric& metric = query.metric;
+  const std::vector<double> goals = weighted(metric, query.goals), start = weighted(metric, {query.start}),
+                            lower = weighted(metric, {query.lower}), upper = weighted(metric, {query.upper});
+  std::vector<double> turns(start.size(), 0.0);
+  for (const int i : metric.wrapping()) turns[static_cast<std::size_t>(i)] = metric.turn(i);
   MmgraspOmplProblem problem{};
   problem.planner = query.planner.c_str();
   problem.size = static_cast<int>(query.start.size());
-  problem.lower = query.lower.data();
-  problem.upper = query.upper.data();
-  problem.wraps = wraps.data();
-  problem.start = query.start.data();
+  problem.lower = lower.data();
+  problem.upper = upper.data();
+  problem.turns = turns.data();
+  problem.start = start.data();
   problem.goal_count = static_cast<int>(query.goals.size());
   problem.goals = goals.data();
   problem.range = query.range;

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "mmgrasp/robot/detail/joint_metric.hpp"
+
 namespace mmgrasp::detail {
 
 /// A planning problem for the planners of plan_motion. Start and goals are valid; values that wrap lie in [-pi, pi].
@@ -12,11 +14,11 @@ struct PlannerQuery {
   std::string planner;
   Eigen::VectorXd lower, upper;            ///< Sampling bounds.
   Eigen::VectorXd near_lower, near_upper;  ///< Where samples are mostly drawn, within these bounds; empty: anywhere.
-  std::vector<bool> wraps;
+  JointMetric metric;                      ///< What a path's length is, and which values wrap.
   Eigen::VectorXd start;
   std::vector<Eigen::VectorXd> goals;
   int turned_goals = 0;             ///< How many of the goals are whole turns of others.
-  double range = 0;                 ///< Longest tree edge; 0: the planner's choice.
+  double range = 0;                 ///< Longest tree edge, by the metric; 0: the planner's choice.
   double near_end_probability = 0;  ///< Chance that a roadmap's sample is drawn around the start or a goal.
   unsigned seed = 1;
   int max_iterations = 1;

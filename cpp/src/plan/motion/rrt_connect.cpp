@@ -27,9 +27,10 @@ class Connect {
   explicit Connect(const PlannerQuery& query)
       : query_(query),
         rng_(query.seed, 2),
-        range_(query.range > 0 ? query.range : kRangeShare * (query.upper - query.lower).norm()),
+        range_(query.range > 0 ? query.range : kRangeShare * query.metric.norm(query.upper - query.lower)),
         time_limit_(query.time_limit),
-        trees_{ConfigurationTree(query.wraps), ConfigurationTree(query.wraps)},
+        trees_{ConfigurationTree(query.start.size(), query.metric),
+               ConfigurationTree(query.start.size(), query.metric)},
         sample_(query.start.size()),
         from_(query.start.size()),
         next_(query.start.size()),
@@ -64,7 +65,7 @@ class Connect {
     const Eigen::VectorXd& lower = anywhere ? query_.lower : query_.near_lower;
     const Eigen::VectorXd& upper = anywhere ? query_.upper : query_.near_upper;
     for (Eigen::Index i = 0; i < sample_.size(); ++i) {
-      const bool wraps = query_.wraps[i];
+      const bool wraps = query_.metric.wraps(static_cast<int>(i));
       sample_[i] = wraps ? rng_.uniform(-kPi, kPi) : rng_.uniform(lower[i], upper[i]);
     }
   }
@@ -72,24 +73,24 @@ class Connect {
   /// The motion from one configuration to another, the short way round; returns its length.
   double motion(const Eigen::VectorXd& from, const Eigen::VectorXd& to, Eigen::VectorXd& out) const {
     out = to - from;
-    wrap(out);
-    return out.norm();
+    query_.metric.wrap(out.data());
+    return query_.metric.norm(out);
   }
 
   /// One step from `node`, which becomes the new node.
   Growth extend(ConfigurationTree& tree, int& node, const Eigen::VectorXd& target) {
     tree.get(node, from_);
     const double distance = motion(from_, target, next_);
-    if (distance < kSameConfiguration) return Growth::reached;
+    if (distance < kSameConfiguration * query_.metric.unit()) return Growth::reached;
     const bool reached = distance <= range_ * (1 + 1e-9);
     if (reached) {
       next_ = target;
     } else {
       next_ = from_ + next_ * (range_ / distance);
-      wrap(next_);
+      query_.metric.wrap(next_.data());
       if (query_.project) {
         if (!query_.project(next_)) return Growth::trapped;
-        wrap(next_);
+        query_.metric.wrap(next_.data());
         // The projection may have taken back the step.
         if (motion(next_, target, motion_) > distance - kLeastProgress * range_) return Growth::trapped;
       }
@@ -97,12 +98,6 @@ class Connect {
     if (!query_.edge_is_free(from_, next_)) return Growth::trapped;
     node = tree.add(next_, node);
     return reached ? Growth::reached : Growth::advanced;
-  }
-
-  void wrap(Eigen::VectorXd& q) const {
-    for (Eigen::Index i = 0; i < q.size(); ++i) {
-      if (query_.wraps[i]) q[i] = shortest_turn(q[i]);
-    }
   }
 
   PlannerAnswer solved(int from_start, int from_goal) {

@@ -39,11 +39,7 @@ class Shortener {
   }
 
  private:
-  static double length(const Waypoints& points) {
-    double sum = 0;
-    for (std::size_t i = 1; i < points.size(); ++i) sum += (points[i] - points[i - 1]).norm();
-    return sum;
-  }
+  double length(const Waypoints& points) const { return edges_.metric().length(points); }
 
   void remove_repeats() {
     Waypoints kept{waypoints_.front()};
@@ -75,7 +71,7 @@ class Shortener {
 
   PathPoint point_at(double s) const {
     for (std::size_t i = 0; i + 1 < waypoints_.size(); ++i) {
-      const double edge = (waypoints_[i + 1] - waypoints_[i]).norm();
+      const double edge = edges_.metric().norm(waypoints_[i + 1] - waypoints_[i]);
       if (s <= edge && edge > 0) return {i, waypoints_[i] + (s / edge) * (waypoints_[i + 1] - waypoints_[i])};
       s -= edge;
     }
@@ -140,7 +136,7 @@ class Shortener {
     const double total = length(old_stretch);
     double s = 0;
     for (std::size_t i = 1; i + 1 < new_stretch.size(); ++i) {
-      s += (old_stretch[i] - old_stretch[i - 1]).norm();
+      s += edges_.metric().norm(old_stretch[i] - old_stretch[i - 1]);
       new_stretch[i][joint] = a.q[joint] + (s / total) * (b.q[joint] - a.q[joint]);
     }
     return replace_if_better(a, b, old_stretch, std::move(new_stretch), kSmallestGain * length(waypoints_));

@@ -59,7 +59,7 @@ class SeededSampler : public ob::StateSampler {
     for (unsigned int i = 0; i < space_->getDimension(); ++i) {
       const double reach = share * (bounds.high[i] - bounds.low[i]);
       values(state)[i] =
-          space_->wraps(i) ? mmgrasp::detail::shortest_turn(end[i] + between(-reach, reach) / 2)
+          space_->wraps(i) ? space_->wrapped(end[i] + between(-reach, reach) / 2, i)
                            : between(std::max(bounds.low[i], end[i] - reach), std::min(bounds.high[i], end[i] + reach));
     }
   }
@@ -103,17 +103,18 @@ JointSpace::JointSpace(std::shared_ptr<RunContext> context)
   const MmgraspOmplProblem& problem = context_->problem();
   ob::RealVectorBounds bounds(problem.size);
   for (int i = 0; i < problem.size; ++i) {
-    wraps_.push_back(problem.wraps[i] != 0);
-    any_wraps_ |= wraps_.back();
-    bounds.setLow(i, wraps_.back() ? -mmgrasp::detail::kPi : problem.lower[i]);
-    bounds.setHigh(i, wraps_.back() ? mmgrasp::detail::kPi : problem.upper[i]);
+    turns_.push_back(problem.turns[i]);
+    const bool wraps = turns_.back() > 0;
+    any_wraps_ |= wraps;
+    bounds.setLow(i, wraps ? -0.5 * turns_.back() : problem.lower[i]);
+    bounds.setHigh(i, wraps ? 0.5 * turns_.back() : problem.upper[i]);
   }
   setBounds(bounds);
   if (any_wraps_) type_ = ob::STATE_SPACE_UNKNOWN;
 }
 
 double JointSpace::difference(double from, double to, unsigned int index) const {
-  return wraps_[index] ? mmgrasp::detail::shortest_turn(to - from) : to - from;
+  return wraps(index) ? wrapped(to - from, index) : to - from;
 }
 
 double JointSpace::distance(const ob::State* a, const ob::State* b) const {
@@ -128,14 +129,14 @@ double JointSpace::distance(const ob::State* a, const ob::State* b) const {
 void JointSpace::interpolate(const ob::State* from, const ob::State* to, double t, ob::State* state) const {
   for (unsigned int i = 0; i < dimension_; ++i) {
     const double value = values(from)[i] + t * difference(values(from)[i], values(to)[i], i);
-    values(state)[i] = wraps_[i] ? mmgrasp::detail::shortest_turn(value) : value;
+    values(state)[i] = wraps(i) ? wrapped(value, i) : value;
   }
 }
 
 void JointSpace::enforceBounds(ob::State* state) const {
   for (unsigned int i = 0; i < dimension_; ++i) {
     double& value = values(state)[i];
-    value = wraps_[i] ? mmgrasp::detail::shortest_turn(value) : std::clamp(value, bounds_.low[i], bounds_.high[i]);
+    value = wraps(i) ? wrapped(value, i) : std::clamp(value, bounds_.low[i], bounds_.high[i]);
   }
 }
 
@@ -146,7 +147,7 @@ bool JointSpace::equalStates(const ob::State* a, const ob::State* b) const {
 double JointSpace::getMaximumExtent() const {
   double sum = 0;
   for (unsigned int i = 0; i < dimension_; ++i) {
-    const double extent = wraps_[i] ? mmgrasp::detail::kPi : bounds_.high[i] - bounds_.low[i];
+    const double extent = wraps(i) ? 0.5 * turns_[i] : bounds_.high[i] - bounds_.low[i];
     sum += extent * extent;
   }
   return std::sqrt(sum);

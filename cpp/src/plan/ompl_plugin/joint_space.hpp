@@ -6,6 +6,7 @@
 #include <ompl/base/objectives/PathLengthOptimizationObjective.h>
 #include <ompl/base/spaces/RealVectorStateSpace.h>
 
+#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -13,14 +14,16 @@
 
 namespace mmgrasp_ompl {
 
-/// Joint values within sampling bounds, of which some are angles that wrap at +-pi. Distance is Euclidean over shortest
+/// Weighted joint values within sampling bounds, of which some wrap at half a turn. Distance is Euclidean over shortest
 /// differences, so that it equals the length of the joint-space edge that is checked and driven.
 class JointSpace : public ompl::base::RealVectorStateSpace {
  public:
   explicit JointSpace(std::shared_ptr<RunContext> context);
 
   bool any_wraps() const { return any_wraps_; }
-  bool wraps(unsigned int index) const { return wraps_[index]; }
+  bool wraps(unsigned int index) const { return turns_[index] > 0; }
+  /// A value that wraps, within half a turn of 0.
+  double wrapped(double value, unsigned int index) const { return std::remainder(value, turns_[index]); }
   double distance(const ompl::base::State* a, const ompl::base::State* b) const override;
   void interpolate(const ompl::base::State* from, const ompl::base::State* to, double t,
                    ompl::base::State* state) const override;
@@ -35,7 +38,7 @@ class JointSpace : public ompl::base::RealVectorStateSpace {
   double difference(double from, double to, unsigned int index) const;
 
   std::shared_ptr<RunContext> context_;
-  std::vector<bool> wraps_;
+  std::vector<double> turns_;  ///< A whole turn of each value that wraps; 0: it does not.
   bool any_wraps_ = false;
 };
 

@@ -13,13 +13,14 @@ enum MmgraspOmplStatus {
   MMGRASP_OMPL_FAILED = 3         ///< `fail` was called with a message.
 };
 
-/// One planning query. Configurations are rows of `size` doubles. Values that wrap are angles in [-pi, pi].
+/// One planning query. Configurations are rows of `size` doubles: joint values times their weights, in which lengths
+/// are Euclidean. Values that wrap lie within half a turn of 0.
 struct MmgraspOmplProblem {
   const char* planner;
   int size;
   const double* lower;
   const double* upper;
-  const unsigned char* wraps;
+  const double* turns;  ///< A whole turn of each value that wraps; 0: it does not.
   const double* start;
   int goal_count;
   const double* goals;
@@ -52,5 +53,5 @@ __attribute__((visibility("default"))) const MmgraspOmplApi* mmgrasp_ompl_api();
 
 }  // extern "C"
 
-constexpr int kMmgraspOmplApiVersion = 4;
+constexpr int kMmgraspOmplApiVersion = 5;
 constexpr const char* kMmgraspOmplApiSymbol = "mmgrasp_ompl_api";

@@ -46,7 +46,9 @@ bool Roadmap::Data::draw(detail::CancelCheck& cancel) {
 }
 
 bool Roadmap::Data::index(detail::CancelCheck& cancel) {
-  cloud = std::make_unique<detail::ColumnCloud>(detail::ColumnCloud{vertices, &cancel});
+  if (metric.weighted()) coordinates = metric.weights().asDiagonal() * vertices;
+  cloud =
+      std::make_unique<detail::ColumnCloud>(detail::ColumnCloud{metric.weighted() ? coordinates : vertices, &cancel});
   try {
     tree = std::make_unique<detail::ColumnTree>(static_cast<int>(vertices.rows()), *cloud,
                                                 nanoflann::KDTreeSingleIndexAdaptorParams(kLeafSize));
@@ -59,12 +61,12 @@ bool Roadmap::Data::index(detail::CancelCheck& cancel) {
 
 double Roadmap::Data::radius() const {
   const double n = static_cast<double>(vertices.cols()), d = static_cast<double>(vertices.rows());
-  return options.gamma * std::pow(std::log(n) / n, 1 / d);
+  return options.gamma * metric.unit() * std::pow(std::log(n) / n, 1 / d);
 }
 
 void Roadmap::Data::near_around(const double* q, int neighbours, std::vector<int>& out) const {
-  std::vector<double> image(q, q + vertices.rows());
-  metric.wrap(image.data());
+  std::vector<double> image(vertices.rows());
+  metric.to_coordinates(q, image.data(), static_cast<int>(vertices.rows()));
   const std::vector<int>& wrapping = metric.wrapping();
   const std::size_t wanted = std::min<Eigen::Index>(neighbours, vertices.cols());
   const double r = radius();
@@ -88,10 +90,10 @@ void Roadmap::Data::near_around(const double* q, int neighbours, std::vector<int
     if (k == wrapping.size()) return ask();
     ask_images(k + 1, off);
     double& value = image[wrapping[k]];
-    const double own = value, beyond = detail::kPi - std::abs(own);
+    const double own = value, turn = metric.turn(wrapping[k]), beyond = 0.5 * turn - std::abs(own);
     off += beyond * beyond;
     if (wanted == 0 && off >= r * r) return;
-    value += own > 0 ? -detail::kTwoPi : detail::kTwoPi;
+    value += own > 0 ? -turn : turn;
     ask_images(k + 1, off);
     value = own;
   };
@@ -119,7 +121,7 @@ int Roadmap::Data::neighbours() const {
 
 void Roadmap::Data::near(const double* q, int neighbours, std::vector<int>& out) const {
   out.clear();
-  if (metric.any()) return near_around(q, neighbours, out);
+  if (!metric.plain()) return near_around(q, neighbours, out);
   if (neighbours > 0) {
     const std::size_t wanted = std::min<Eigen::Index>(neighbours, vertices.cols());
     out.resize(wanted);
@@ -226,8 +228,10 @@ Roadmap detail::build_roadmap(const JointGroup& group, const RoadmapOptions& opt
   return Roadmap(data);
 }
 
-Roadmap detail::roadmap_over(const JointGroup& group, int neighbours, Eigen::MatrixXd vertices) {
+Roadmap detail::roadmap_over(const JointGroup& group, int neighbours, Eigen::MatrixXd vertices,
+                             const JointWeights& weights) {
   RoadmapOptions options;
+  options.joint_weights = weights;
   options.vertices = static_cast<int>(vertices.cols());
   options.neighbours = neighbours;
   auto data = std::make_shared<Roadmap::Data>(group, options);
@@ -281,8 +285,9 @@ RoadmapStatistics Roadmap::statistics() const {
   RoadmapStatistics out;
   const auto d = static_cast<double>(data_->group.size());
   out.volume = (data_->group.sample_upper() - data_->group.sample_lower()).prod();
-  out.gamma_star =
-      2 * std::pow(1 + 1 / d, 1 / d) * std::pow(out.volume / detail::unit_ball_volume(data_->group.size()), 1 / d);
+  if (data_->metric.weighted()) out.volume *= data_->metric.weights().prod();
+  out.gamma_star = 2 * std::pow(1 + 1 / d, 1 / d) *
+                   std::pow(out.volume / detail::unit_ball_volume(data_->group.size()), 1 / d) / data_->metric.unit();
   if (size() == 0) return out;
   out.mean_degree = 2.0 * edge_count() / size();
   out.components = data_->components;

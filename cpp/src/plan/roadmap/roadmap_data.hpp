@@ -75,7 +75,8 @@ MMGRASP_EXPORT Roadmap build_roadmap(const JointGroup& group, const RoadmapOptio
                                      const std::function<bool()>& over);
 
 /// A small roadmap over given configurations, one column each, built in the calling thread.
-MMGRASP_EXPORT Roadmap roadmap_over(const JointGroup& group, int neighbours, Eigen::MatrixXd vertices);
+MMGRASP_EXPORT Roadmap roadmap_over(const JointGroup& group, int neighbours, Eigen::MatrixXd vertices,
+                                    const JointWeights& weights = {});
 
 /// Hash of what must be the same for a roadmap to fit a group: the robot's joints, and which of them the group moves
 /// within which bounds. Shapes, disabled pairs and the pose of the root do not matter.
@@ -85,7 +86,7 @@ std::uint64_t kinematics_key(const JointGroup& group);
 
 struct Roadmap::Data {
   Data(const JointGroup& group_in, const RoadmapOptions& options_in)
-      : group(group_in), metric(group_in.wraps()), options(options_in) {}
+      : group(group_in), metric(group_in.wraps(), options_in.joint_weights.of(group_in)), options(options_in) {}
 
   /// Draws the vertices; false when stopped.
   bool draw(detail::CancelCheck& cancel);
@@ -96,8 +97,9 @@ struct Roadmap::Data {
   int neighbours() const;
   /// The `neighbours` nearest vertices, or with 0 those nearer than radius(); ascending.
   void near(const double* q, int neighbours, std::vector<int>& out) const;
-  /// The same where angles wrap. The search tree knows no angles, so it is asked for each image of q by whole turns
-  /// that can be nearer to a vertex than q in [-pi, pi] is: every such angle has one.
+  /// The same where angles wrap or joints have weights. The search tree holds coordinates of the metric and knows no
+  /// angles, so it is asked for each image of q by whole turns that can be nearer to a vertex than q in [-pi, pi] is:
+  /// every such angle has one.
   void near_around(const double* q, int neighbours, std::vector<int>& out) const;
   /// Joins near vertices; false when stopped.
   bool join(detail::CancelCheck& cancel, int threads);
@@ -113,6 +115,7 @@ struct Roadmap::Data {
   std::vector<int> first;                 ///< Arcs of vertex v: first[v] .. first[v + 1].
   std::vector<Arc> arcs;
   int components = 0, largest_component = 0;  ///< Their number, and the vertices of the largest one.
+  Eigen::MatrixXd coordinates;                ///< The vertices in the metric, unless it is plain.
   std::unique_ptr<detail::ColumnCloud> cloud;
   std::unique_ptr<detail::ColumnTree> tree;
 };

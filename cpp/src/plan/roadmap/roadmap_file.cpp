@@ -1,4 +1,5 @@
 // Roadmap::save and Roadmap::load. A file holds vertices and edges as they are in memory: magic, key, sizes, numbers,
+// weights (none: all 1),
 // checksum.
 #include <cstring>
 
@@ -10,13 +11,13 @@
 namespace mmgrasp {
 namespace {
 
-constexpr char kMagic[] = "mmgrasp roadmap 1\n";
+constexpr char kMagic[] = "mmgrasp roadmap 2\n";
 
 struct Header {
   std::uint64_t key;
   std::int64_t joints, vertices, edges;
   double gamma;
-  std::int64_t neighbours, seed;
+  std::int64_t neighbours, seed, weights;
 };
 
 void append(std::string& out, const void* bytes, std::size_t size) {
@@ -47,7 +48,8 @@ void Roadmap::save(const std::string& path) const {
                       edge_count(),
                       data.options.gamma,
                       data.options.neighbours,
-                      data.options.seed};
+                      data.options.seed,
+                      data.metric.weights().size()};
   std::string out(kMagic);
   append(out, &header, sizeof header);
   append(out, data.vertices.data(), sizeof(double) * data.vertices.size());
@@ -55,6 +57,7 @@ void Roadmap::save(const std::string& path) const {
     const std::int32_t pair[2] = {a, b};
     append(out, pair, sizeof pair);
   }
+  append(out, data.metric.weights().data(), sizeof(double) * data.metric.weights().size());
   const std::uint64_t checksum = Hasher().add(out).value();
   append(out, &checksum, sizeof checksum);
   detail::write_file(path, "roadmap", {out});
@@ -78,8 +81,10 @@ Roadmap Roadmap::load(const std::string& path, const JointGroup& group) {
   }
   const std::size_t vertex_bytes = sizeof(double) * (header.joints * header.vertices);
   const std::size_t edge_bytes = 2 * sizeof(std::int32_t) * header.edges;
+  const std::size_t weight_bytes = sizeof(double) * header.weights;
   if (header.joints != group.size() || header.vertices < 0 || header.edges < 0 ||
-      body != kStart + sizeof header + vertex_bytes + edge_bytes) {
+      (header.weights != 0 && header.weights != header.joints) ||
+      body != kStart + sizeof header + vertex_bytes + edge_bytes + weight_bytes) {
     throw IoError(path + ": is damaged: sizes do not fit");
   }
   RoadmapOptions options;
@@ -87,6 +92,8 @@ Roadmap Roadmap::load(const std::string& path, const JointGroup& group) {
   options.gamma = header.gamma;
   options.neighbours = static_cast<int>(header.neighbours);
   options.seed = static_cast<unsigned>(header.seed);
+  options.joint_weights.values.resize(header.weights);
+  std::memcpy(options.joint_weights.values.data(), content.data() + body - weight_bytes, weight_bytes);
   auto data = std::make_shared<Data>(group, options);
   const char* at = content.data() + kStart + sizeof header;
   data->vertices.resize(header.joints, header.vertices);

@@ -1,6 +1,7 @@
 // A chain as motions about and along z, which is what the kernels run on.
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
@@ -82,26 +83,27 @@ void bound_reach(const Path& path, GroupModel& model) {
     model.reach += travel(model, path.motions[i]) + (i > 0 ? path.motions[i].p.norm() : 0.0);
 }
 
-/// The norms of the tip's Jacobian, each column by its longest lever: what lies beyond its joint, stretched out.
+/// Bounds on the columns of the tip's Jacobian, by the longest lever of each joint: what lies beyond it, stretched out.
 void bound_tip_motion(const Path& path, GroupModel& model) {
-  const auto columns = static_cast<Eigen::Index>(model.names.size());
-  Eigen::VectorXd speed = Eigen::VectorXd::Zero(columns), turn = Eigen::VectorXd::Zero(columns);
+  std::map<int, TipLever> levers;  // by column
   double lever = path.tip.t.norm();
   for (auto motion = path.motions.rbegin(); motion != path.motions.rend(); ++motion) {
     const double rate = std::abs(motion->drive.multiplier);
     const bool slides = motion->motion == Motion::prismatic;
-    // A rotation vector turns no faster than it changes, so that its three columns count as one.
-    speed[motion->drive.column] += rate * (slides ? 1 : lever);
-    if (!slides) turn[motion->drive.column] += rate;
+    TipLever& own = levers[motion->drive.column];
+    own.first = motion->drive.column;
+    // A rotation vector turns no faster than it changes.
+    if (motion->motion == Motion::spherical) own.count = 3;
+    own.speed += rate * (slides ? 1 : lever);
+    if (!slides) own.turn += rate;
     lever += travel(model, *motion) + motion->p.norm();
   }
   if (model.has_base) {
-    speed[0] = 1;  // Together with y, at right angles to it.
-    speed[2] = lever;
-    turn[2] = 1;
+    levers[0] = {0, 2, 1, 0};
+    levers[2] = {2, 1, lever, 1};
   }
-  model.tip_speed = speed.norm();
-  model.tip_turn = turn.norm();
+  model.tip_levers.clear();
+  for (const auto& entry : levers) model.tip_levers.push_back(entry.second);
 }
 
 double wrapped(double angle) {

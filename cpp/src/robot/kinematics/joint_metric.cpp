@@ -6,10 +6,17 @@
 
 namespace mmgrasp::detail {
 
-JointMetric::JointMetric(const std::vector<bool>& wraps) {
+JointMetric::JointMetric(const std::vector<bool>& wraps, Eigen::VectorXd weights) : weights_(std::move(weights)) {
   for (std::size_t i = 0; i < wraps.size(); ++i)
     if (wraps[i]) wrapping_.push_back(static_cast<int>(i));
   if (any()) wraps_.assign(wraps.begin(), wraps.end());
+  if (weighted()) unit_ = std::sqrt(weights_.squaredNorm() / static_cast<double>(weights_.size()));
+}
+
+double JointMetric::length(const std::vector<Eigen::VectorXd>& waypoints) const {
+  double sum = 0;
+  for (std::size_t w = 1; w < waypoints.size(); ++w) sum += norm(waypoints[w] - waypoints[w - 1]);
+  return sum;
 }
 
 Eigen::VectorXd JointMetric::nearest(const Eigen::VectorXd& from, const Eigen::VectorXd& to) const {
@@ -27,7 +34,7 @@ Eigen::VectorXd JointMetric::wrapped(const Eigen::VectorXd& q) const {
 double JointMetric::squared_distance_around(const double* a, const double* b, int dimension) const {
   double sum = 0;
   for (int i = 0; i < dimension; ++i) {
-    const double apart = wraps_[i] ? nearest_angle(b[i], a[i]) - b[i] : a[i] - b[i];
+    const double apart = weight(i) * (wraps(i) ? nearest_angle(b[i], a[i]) - b[i] : a[i] - b[i]);
     sum += apart * apart;
   }
   return sum;

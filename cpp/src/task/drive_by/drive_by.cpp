@@ -41,7 +41,8 @@ std::string most_frequent_contact(CollisionChecker& checker, const GoalConfigura
 class DriveBy {
  public:
   DriveBy(const JointGroup& group, const World& world, const VectorXd& start, const std::vector<DriveByTask>& tasks,
-          const DriveByGoal& goal, const DriveByOptions& options, const Monitor& monitor)
+          const DriveByGoal& goal, const DriveByOptions& options, const Monitor& monitor,
+          const CollisionChecker* prepared = nullptr)
       : group_(group),
         world_(world),
         start_(start),
@@ -54,7 +55,7 @@ class DriveBy {
       if (goal_.lower[i] != goal_.upper[i]) continue;
       goal_.lower[i] = goal_.upper[i] = start[i] + wrap_angle(goal_.lower[i] - start[i]);
     }
-    if (options.collisions) scene_states_.emplace(group_, world, steps_);
+    if (options.collisions) scene_states_.emplace(group_, world, steps_, prepared);
     solver_.emplace(group_, start_, steps_, goal_, options_, scene_states_ ? &*scene_states_ : nullptr, monitor_);
   }
 
@@ -234,16 +235,27 @@ void check_call(const JointGroup& group, const World& world, const VectorXd& sta
   ends.check();
 }
 
+DriveByResult planned(DriveBy&& plan) {
+  DriveByResult result = plan.run();
+  result.seconds = plan.seconds();
+  return result;
+}
+
 }  // namespace
 
 DriveByResult plan_drive_by(const JointGroup& group, const World& world, const VectorXd& start,
                             const std::vector<DriveByTask>& tasks, const DriveByGoal& goal,
                             const DriveByOptions& options, const Monitor& monitor) {
   check_call(group, world, start, tasks, goal, options);
-  DriveBy plan(group, world, start, tasks, goal, options, monitor);
-  DriveByResult result = plan.run();
-  result.seconds = plan.seconds();
-  return result;
+  return planned(DriveBy(group, world, start, tasks, goal, options, monitor));
+}
+
+DriveByResult plan_drive_by(const CollisionChecker& checker, const VectorXd& start,
+                            const std::vector<DriveByTask>& tasks, const DriveByGoal& goal,
+                            const DriveByOptions& options, const Monitor& monitor) {
+  require(!checker.options().attached_only, "checker: attached_only", "true", "must check the robot itself, too");
+  check_call(checker.group(), checker.world(), start, tasks, goal, options);
+  return planned(DriveBy(checker.group(), checker.world(), start, tasks, goal, options, monitor, &checker));
 }
 
 std::optional<DriveByStart> first_drive_by_guess(const JointGroup& group, const VectorXd& start,

@@ -31,8 +31,11 @@ std::vector<std::string> finger_links(const JointGroup& group) {
 
 }  // namespace
 
-SceneStates::SceneStates(const JointGroup& group, const World& world, const std::vector<DriveByStep>& tasks)
-    : group_(group), world_(world), tasks_(tasks) {}
+SceneStates::SceneStates(const JointGroup& group, const World& world, const std::vector<DriveByStep>& tasks,
+                         const CollisionChecker* prepared)
+    : group_(group), world_(world), tasks_(tasks), options_(prepared ? prepared->options() : CheckerOptions()) {
+  if (prepared) before_.emplace(0, prepared->clone());
+}
 
 World SceneStates::left(std::size_t task) const {
   World world = world_;
@@ -42,14 +45,14 @@ World SceneStates::left(std::size_t task) const {
 }
 
 CollisionChecker& SceneStates::before(std::size_t task) {
-  return before_.try_emplace(task, group_, left(task)).first->second;
+  return before_.try_emplace(task, group_, left(task), options_).first->second;
 }
 
 CollisionChecker& SceneStates::at(std::size_t task) {
   if (task >= tasks_.size() || tasks_[task].object.empty()) return before(task);
   World world = left(task);
   for (const std::string& finger : finger_links(group_)) world.allow(tasks_[task].object, finger);
-  return at_.try_emplace(task, group_, world).first->second;
+  return at_.try_emplace(task, group_, world, options_).first->second;
 }
 
 CollisionChecker SceneStates::holding(std::size_t step, const Eigen::VectorXd& q) const {
@@ -59,7 +62,7 @@ CollisionChecker SceneStates::holding(std::size_t step, const Eigen::VectorXd& q
   const auto attached_at = [&](const Pose& T_world_standing) {
     World world = left(step);
     world.attach(object, tip, attached_pose(tasks_[step], group_.fk(q), T_world_standing));
-    return CollisionChecker(group_, world);
+    return CollisionChecker(group_, world, options_);
   };
   CollisionChecker checker = attached_at(T_world_object);
   const std::vector<Contact> contacts = checker.contacts(q);

@@ -74,6 +74,13 @@ struct GroupKinematics {
   }
 };
 
+/// How far the tip moves [m] and turns [rad] at most when a value changes by 1, or several together (a ball's rotation
+/// vector, x and y of a base) by a vector of length 1.
+struct TipLever {
+  int first = 0, count = 1;  ///< Columns.
+  double speed = 0, turn = 0;
+};
+
 /// Everything of a group but where its root stands; shared by all its copies.
 struct GroupModel {
   Robot robot;
@@ -87,8 +94,7 @@ struct GroupModel {
   std::shared_ptr<const GroupKinematics> kinematics;
   double reach = 0;  ///< Bound on the distance from first_joint (or the root) to the tip [m].
   Eigen::Vector3d first_joint = Eigen::Vector3d::Zero();  ///< Where the chain starts, in the root.
-  /// Bounds on how far the tip moves [m] and turns [rad] along a path of length 1 in joint space.
-  double tip_speed = 0, tip_turn = 0;
+  std::vector<TipLever> tip_levers;                       ///< What may move the tip.
 
   explicit GroupModel(Robot r) : robot(std::move(r)) {}
   int base_columns() const { return has_base ? 3 : 0; }

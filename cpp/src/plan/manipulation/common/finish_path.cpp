@@ -14,7 +14,7 @@ void finish_path(const ManipulationInput& input, ManipulationResult& result) {
     return input.checks.path_edge_is_free(grasp, a, b);
   });
   if (path.waypoints.size() == result.path->waypoints.size()) return;
-  const double cost = path.length() + input.problem.grasps[grasp].cost;
+  const double cost = input.metric.length(path.waypoints) + input.problem.grasps[grasp].cost;
   if (cost < result.cost) return take_path(input, {grasp, cost, std::move(path), PlanStage::shortening}, result);
   result.improvements.back().path = path;
   result.path = std::move(path);

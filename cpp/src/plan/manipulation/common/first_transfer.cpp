@@ -17,11 +17,11 @@ constexpr double kNoTimeLimit = 1e7;    // Limit of one RRT-Connect [s]: the cal
 class FirstTransfer {
  public:
   FirstTransfer(const ManipulationInput& input, ManipulationResult& result)
-      : input_(input), result_(result), metric_(input.problem.group.wraps()) {
+      : input_(input), result_(result), metric_(input.metric) {
     const JointGroup& group = input.problem.group;
     query_.lower = group.sample_lower();
     query_.upper = group.sample_upper();
-    query_.wraps = group.wraps();
+    query_.metric = metric_;
     query_.time_limit = kNoTimeLimit;
     query_.stopped = [this] { return input_.out_of_time(); };
     query_.edge_is_free = [this](const Eigen::VectorXd& a, const Eigen::VectorXd& b) { return edge_is_free(a, b); };
@@ -70,7 +70,7 @@ class FirstTransfer {
     JointPath path{std::move(waypoints)};
     metric_.unroll(path.waypoints);
     if (input_.checks.blocked_edge(grasp_, path) >= 0) return false;
-    const double cost = path.length() + candidate.cost;
+    const double cost = metric_.length(path.waypoints) + candidate.cost;
     found_ = {grasp_, cost, std::move(path), stage};
     take_path(input_, found_, result_);
     return true;
@@ -84,7 +84,7 @@ class FirstTransfer {
 
   const ManipulationInput& input_;
   ManipulationResult& result_;
-  const JointMetric metric_;
+  const JointMetric& metric_;
   PlannerQuery query_;
   TransferPath found_;
   int grasp_ = -1, round_ = 0, left_ = kTotalIterations;

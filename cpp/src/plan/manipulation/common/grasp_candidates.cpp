@@ -53,10 +53,11 @@ double GraspCandidate::straight_cost() const {
 }
 
 GraspCandidates::GraspCandidates(const ManipulationProblem& problem, const ManipulationOptions& options,
-                                 TransferChecks& checks, const Stopwatch& clock, const Monitor& monitor,
-                                 ManipulationResult& result)
+                                 const JointMetric& metric, TransferChecks& checks, const Stopwatch& clock,
+                                 const Monitor& monitor, ManipulationResult& result)
     : problem_(problem),
       options_(options),
+      metric_(metric),
       checks_(checks),
       clock_(clock),
       monitor_(monitor),
@@ -124,7 +125,7 @@ GraspCandidate GraspCandidates::check(int grasp, int worker, GraspReport& report
   out.grasp = grasp;
   out.opening = checks_.opening_of(grasp);
   out.cost = problem_.grasps[grasp].cost;
-  out.metric = JointMetric(problem_.group.wraps());
+  out.metric = metric_;
   const auto valid = [&](const Eigen::VectorXd& q) {
     // The object first: it has fewer shapes, and hits the scene in every configuration with this tool pose or in none.
     ReachVerdict verdict{checks_.attached_rejection(worker, grasp, q), false};
@@ -154,7 +155,7 @@ GraspCandidate GraspCandidates::check(int grasp, int worker, GraspReport& report
 
 double GraspCandidates::least_cost_from_anywhere(int grasp) const {
   return problem_.grasps[grasp].cost + least_motion(problem_.group, pose_of_tool(problem_, grasp, false),
-                                                    pose_of_tool(problem_, grasp, true), options_.ik);
+                                                    pose_of_tool(problem_, grasp, true), options_.ik, metric_);
 }
 
 double GraspCandidates::least_cost_left() const {

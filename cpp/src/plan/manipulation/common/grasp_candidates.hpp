@@ -31,8 +31,8 @@ struct MMGRASP_EXPORT GraspCandidate {
 class GraspCandidates {
  public:
   /// Writes a report for each grasp, and the time spent, to `result`.
-  GraspCandidates(const ManipulationProblem& problem, const ManipulationOptions& options, TransferChecks& checks,
-                  const Stopwatch& clock, const Monitor& monitor, ManipulationResult& result);
+  GraspCandidates(const ManipulationProblem& problem, const ManipulationOptions& options, const JointMetric& metric,
+                  TransferChecks& checks, const Stopwatch& clock, const Monitor& monitor, ManipulationResult& result);
 
   /// Those found so far; find_more() adds at the end.
   const std::vector<GraspCandidate>& found() const { return found_; }
@@ -63,6 +63,7 @@ class GraspCandidates {
 
   const ManipulationProblem& problem_;
   const ManipulationOptions& options_;
+  const JointMetric& metric_;
   TransferChecks& checks_;
   const Stopwatch& clock_;
   const Monitor& monitor_;

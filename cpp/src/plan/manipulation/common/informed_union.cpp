@@ -15,6 +15,10 @@ constexpr double kThin = 1e-9;             // Ellipsoids whose c exceeds c_min b
 constexpr int kRandomGuesses = 64;         // Random ellipsoids tested before all of them are.
 constexpr double kRelativeScanCost = 0.1;  // Time to test one grasp, by that of one draw.
 
+double weighted_volume(const JointMetric& metric, const Eigen::VectorXd& sides) {
+  return metric.weighted() ? sides.cwiseProduct(metric.weights()).prod() : sides.prod();
+}
+
 }  // namespace
 
 InformedUnion::InformedUnion(const GraspEnds& ends, const Eigen::VectorXd& lower, const Eigen::VectorXd& upper)
@@ -22,7 +26,7 @@ InformedUnion::InformedUnion(const GraspEnds& ends, const Eigen::VectorXd& lower
       lower_(lower),
       upper_(upper),
       unit_ball_volume_(unit_ball_volume(ends.dimension())),
-      box_volume_((upper - lower).prod()),
+      box_volume_(weighted_volume(ends.metric(), upper - lower)),
       cost_(kInfinity),
       grasps_(ends.size()),
       direction_(ends.dimension() + 1),
@@ -82,8 +86,9 @@ void InformedUnion::append_images(const Pair& nearest) {
   const std::vector<int>& wrapping = ends_.metric().wrapping();
   for (std::size_t k = 0; k < wrapping.size(); ++k) {
     const int i = wrapping[k];
-    const double short_way = std::abs(JointMetric::nearest_angle(start[i], goal[i]) - start[i]);
-    const double long_way = kTwoPi - short_way;
+    const double short_way =
+        ends_.metric().weight(i) * std::abs(JointMetric::nearest_angle(start[i], goal[i]) - start[i]);
+    const double long_way = ends_.metric().turn(i) - short_way;
     const std::size_t count = pairs_.size();
     for (std::size_t p = first; p < count; ++p) {
       Pair image = pairs_[p];
@@ -131,7 +136,8 @@ double InformedUnion::volume() {
 
 void InformedUnion::draw_ellipsoid(Rng& rng, const Pair& pair, double c, double* q) {
   const int d = ends_.dimension();
-  // A direction from normal numbers, two at a time, and a radius.
+  const JointMetric& metric = ends_.metric();
+  // A direction, in the metric's coordinates, from normal numbers, two at a time, and a radius.
   double squared = 0;
   for (int i = 0; i < d; i += 2) {
     const double radius = std::sqrt(-2 * std::log(1 - rng.uniform())), angle = kTwoPi * rng.uniform();
@@ -150,15 +156,17 @@ void InformedUnion::draw_ellipsoid(Rng& rng, const Pair& pair, double c, double*
     const double inverse = 1 / pair.c_min;
     double product = 0, norm = 0;
     for (int i = 0; i < d; ++i) {
-      const double u = (goal[i] - start[i]) * inverse - (i == 0 ? 1 : 0);
+      const double u = metric.weight(i) * (goal[i] - start[i]) * inverse - (i == 0 ? 1 : 0);
       product += u * q[i];
       norm += u * u;
     }
     if (norm > 0) {
       const double factor = 2 * product / norm;
-      for (int i = 0; i < d; ++i) q[i] -= factor * ((goal[i] - start[i]) * inverse - (i == 0 ? 1 : 0));
+      for (int i = 0; i < d; ++i)
+        q[i] -= factor * (metric.weight(i) * (goal[i] - start[i]) * inverse - (i == 0 ? 1 : 0));
     }
   }
+  metric.from_coordinates(q, q, d);
   for (int i = 0; i < d; ++i) q[i] += 0.5 * (start[i] + goal[i]);
 }
 
@@ -206,7 +214,7 @@ int InformedUnion::draw_box(Rng& rng, double* q) {
 void InformedUnion::draw_around(Rng& rng, int grasp, double factor, double* q) {
   const std::size_t first = first_of_[grasp];
   const Pair& pair = all_[first + rng.index(first_of_[grasp + 1] - first)];
-  draw_ellipsoid(rng, pair, pair.c_min * factor + kLeastDetour, q);
+  draw_ellipsoid(rng, pair, pair.c_min * factor + kLeastDetour * ends_.metric().unit(), q);
   ends_.metric().wrap(q);
   for (Eigen::Index i = 0; i < lower_.size(); ++i) q[i] = std::clamp(q[i], lower_[i], upper_[i]);
 }

@@ -21,7 +21,8 @@ namespace mmgrasp::detail {
 /// Where angles wrap, a pair's set is all q with distance(start, q) + distance(q, goal) below the cost. Unrolled, that
 /// is a union of ellipsoids, from the start to every image of the goal by whole turns. A draw from one of them counts
 /// when it is the image of q nearest to the start and the goal's image is the one nearest to it: each q does so once,
-/// so the draws are uniform still, and only the two nearest turns of each angle matter.
+/// so the draws are uniform still, and only the two nearest turns of each angle matter. Where joints have weights, the
+/// ellipsoids are those of the metric's coordinates, whose volumes these are.
 class MMGRASP_EXPORT InformedUnion {
  public:
   InformedUnion(const GraspEnds& ends, const Eigen::VectorXd& lower, const Eigen::VectorXd& upper);

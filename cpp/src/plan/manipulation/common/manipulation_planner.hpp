@@ -9,6 +9,7 @@
 #include "mmgrasp/core/monitor.hpp"
 #include "mmgrasp/plan/improvement.hpp"
 #include "mmgrasp/plan/manipulation.hpp"
+#include "mmgrasp/robot/detail/joint_metric.hpp"
 #include "plan/manipulation/common/grasp_candidates.hpp"
 #include "plan/manipulation/common/transfer_checks.hpp"
 
@@ -18,7 +19,8 @@ namespace mmgrasp::detail {
 struct ManipulationInput {
   const ManipulationProblem& problem;
   const ManipulationOptions& options;
-  const Roadmap* roadmap;  ///< The caller's; null when none was given.
+  const JointMetric& metric;  ///< Measures by the options' weights.
+  const Roadmap* roadmap;     ///< The caller's; null when none was given.
   TransferChecks& checks;
   GraspCandidates& candidates;  ///< None found yet.
   const ImprovementCallback& on_improvement;
@@ -27,6 +29,13 @@ struct ManipulationInput {
 
   bool out_of_time() const { return monitor.stopped() || clock.seconds() > options.time_limit; }
 };
+
+/// How the planner's own roadmap is built.
+inline RoadmapOptions roadmap_options(const ManipulationOptions& options) {
+  RoadmapOptions own = options.prm.roadmap;
+  own.joint_weights = options.joint_weights;
+  return own;
+}
 
 /// A path with one of the grasps.
 struct TransferPath {
@@ -56,6 +65,7 @@ MMGRASP_EXPORT ManipulationResult plan_manipulation_with(const ManipulationPlann
                                                          const ManipulationProblem& problem,
                                                          const ManipulationOptions& options, const Roadmap* roadmap,
                                                          const Monitor& monitor,
-                                                         const ImprovementCallback& on_improvement);
+                                                         const ImprovementCallback& on_improvement,
+                                                         const CollisionChecker* checker);
 
 }  // namespace mmgrasp::detail

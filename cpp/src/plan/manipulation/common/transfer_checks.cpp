@@ -28,8 +28,15 @@ int moved_by(const JointGroup& group, int link) {
 
 }  // namespace
 
-TransferChecks::TransferChecks(const ManipulationProblem& problem, const EdgeOptions& edge, int workers)
-    : problem_(problem), edge_(edge), path_edge_(edge), robot_(workers), attached_(robot_.size()) {
+TransferChecks::TransferChecks(const ManipulationProblem& problem, const EdgeOptions& edge, int workers,
+                               const CollisionChecker* prepared)
+    : problem_(problem),
+      prepared_(prepared),
+      group_(prepared ? prepared->group() : problem.group),
+      edge_(edge),
+      path_edge_(edge),
+      robot_(workers),
+      attached_(robot_.size()) {
   path_edge_.joint_step = std::min(path_edge_.joint_step, kFinalStep) / kFinalResolution;
   path_edge_.workspace_step /= kFinalResolution;
   std::map<std::pair<double, std::vector<double>>, int> openings;  // by opening and posture
@@ -39,7 +46,7 @@ TransferChecks::TransferChecks(const ManipulationProblem& problem, const EdgeOpt
         openings.emplace(fingers ? std::pair(grasp.opening, grasp.posture) : std::pair(0.0, std::vector<double>{}),
                          static_cast<int>(groups_.size()));
     if (added) {
-      groups_.push_back(fingers ? with_fingers(problem.group, *problem.gripper, grasp) : problem.group);
+      groups_.push_back(fingers ? with_fingers(group_, *problem.gripper, grasp) : group_);
     }
     opening_of_.push_back(at->second);
   }
@@ -58,11 +65,16 @@ TransferChecks::RobotAlone& TransferChecks::robot(int worker, int opening) {
   if (!slot) {
     World world = problem_.world;
     world.forget(problem_.object_name);  // a checker refuses names that are not there
-    CollisionChecker checker(group(opening), world);
+    CollisionChecker checker =
+        prepared_ ? prepared_->with_group(group(opening)) : CollisionChecker(group(opening), world);
     Eigen::VectorXd motion = motion_bounds(checker);
     slot.emplace(RobotAlone{std::move(checker), std::move(motion)});
   }
   return *slot;
+}
+
+CheckerOptions TransferChecks::options() const {
+  return prepared_ ? prepared_->options() : CheckerOptions();
 }
 
 Pose TransferChecks::T_tool_object(int grasp) const {
@@ -77,12 +89,12 @@ World TransferChecks::world_with(int grasp) const {
 }
 
 CollisionChecker TransferChecks::whole(int grasp) const {
-  return CollisionChecker(group(opening_of(grasp)), world_with(grasp));
+  return CollisionChecker(group(opening_of(grasp)), world_with(grasp), options());
 }
 
 AttachedChecker& TransferChecks::holding(std::optional<WithObject>& slot, int grasp, bool attached_only) {
   if (!slot) {
-    CheckerOptions options;
+    CheckerOptions options = this->options();
     options.attached_only = attached_only;
     slot.emplace(WithObject{AttachedChecker(group(opening_of(grasp)), world_with(grasp), options), grasp});
   } else if (slot->grasp != grasp) {

@@ -20,7 +20,9 @@ namespace mmgrasp::detail {
 /// opening, made when first needed; from grasp to grasp only the object's pose in the hand changes.
 class MMGRASP_EXPORT TransferChecks {
  public:
-  TransferChecks(const ManipulationProblem& problem, const EdgeOptions& edge, int workers);
+  /// `prepared`: a checker of the problem's group and world (checker_difference()), or null.
+  TransferChecks(const ManipulationProblem& problem, const EdgeOptions& edge, int workers,
+                 const CollisionChecker* prepared = nullptr);
 
   int opening_count() const { return static_cast<int>(groups_.size()); }
   int opening_of(int grasp) const { return opening_of_[grasp]; }
@@ -61,10 +63,13 @@ class MMGRASP_EXPORT TransferChecks {
   AttachedChecker& attached(int worker, int grasp);
   /// The checker of `slot` with the object in this grasp.
   AttachedChecker& holding(std::optional<WithObject>& slot, int grasp, bool attached_only);
+  CheckerOptions options() const;
   Pose T_tool_object(int grasp) const;
   World world_with(int grasp) const;
 
   const ManipulationProblem& problem_;
+  const CollisionChecker* prepared_;
+  const JointGroup group_;  ///< The problem's: the prepared checker's, of which more checkers can be made.
   EdgeOptions edge_, path_edge_;
   std::vector<JointGroup> groups_;  ///< One per opening.
   std::vector<int> opening_of_;     ///< Per grasp.

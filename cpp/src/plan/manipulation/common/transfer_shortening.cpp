@@ -20,6 +20,7 @@ void shorten_transfer(const ManipulationInput& input, const TransferPath& path, 
   MotionOptions options;
   options.joint_step = input.options.edge.joint_step;
   options.workspace_step = input.options.edge.workspace_step;
+  options.joint_weights = input.options.joint_weights;
   MotionEdges edges(checker, options);
   if (edges.steered()) return;
   Rng rng(input.options.seed, 0x736f + 0x10000u * round);
@@ -32,8 +33,9 @@ void shorten_transfer(const ManipulationInput& input, const TransferPath& path, 
     if (path.cost <= result.cost) shorter.stage = PlanStage::shortening;
     shortening.resolution = resolution;
     shorten_path(edges, shorter.path, rng, shortening);
-    shorter.cost = shorter.path.length() + fixed;
-    if (shorter.cost > std::min(path.cost, result.cost) - kLeastGain || input.out_of_time()) return;
+    shorter.cost = input.metric.length(shorter.path.waypoints) + fixed;
+    if (shorter.cost > std::min(path.cost, result.cost) - kLeastGain * input.metric.unit() || input.out_of_time())
+      return;
     if (input.checks.blocked_edge(path.grasp, shorter.path) < 0) return take_path(input, std::move(shorter), result);
   }
 }

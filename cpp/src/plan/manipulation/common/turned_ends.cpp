@@ -28,9 +28,9 @@ struct TurnPair {
   }
 };
 
-/// The pairs of turns that paths of a length below `bound` need, nearest first. Those with the same difference are the
-/// same motion, shifted: one will do from which the path cannot reach a limit. It leaves the range between its ends by
-/// at most half of what it is longer than their difference.
+/// The pairs of turns that paths which move the joint by less than `bound` need, nearest first. Those with the same
+/// difference are the same motion, shifted: one will do from which the path cannot reach a limit. It leaves the range
+/// between its ends by at most half of what it is longer than their difference.
 std::vector<TurnPair> needed_pairs(const std::vector<double>& starts, const std::vector<double>& goals,
                                    double own_start, double lower, double upper, double bound) {
   std::vector<TurnPair> all;
@@ -124,9 +124,10 @@ void add_turned_ends(const WholeTurns& turns, const JointGroup& group, double bo
         pairs.push_back(candidate.metric.wraps(i)
                             ? std::vector<TurnPair>{{s[i], candidate.metric.nearest(i, s[i], g[i]), 0}}
                             : needed_pairs(start_turns[first][i], goal_turns[last][i], s[i], group.lower()[i],
-                                           group.upper()[i], length));
+                                           group.upper()[i], length / candidate.metric.weight(i)));
         std::vector<double> own;
-        for (const TurnPair& pair : pairs.back()) own.push_back(pair.squared());
+        const double weight = candidate.metric.weight(i);
+        for (const TurnPair& pair : pairs.back()) own.push_back(weight * weight * pair.squared());
         distances.push_back(std::move(own));
       }
       LeastSums sums(std::move(distances));

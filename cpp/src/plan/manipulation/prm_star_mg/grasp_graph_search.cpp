@@ -21,8 +21,7 @@ double GraspGraphSearch::heuristic(int node) const {
   const JointMetric& metric = graph_->candidate.metric;
   const auto nearest = [&](const auto& q) {
     for (const Eigen::VectorXd& goal : graph_->candidate.goals)
-      least = std::min(least, metric.any() ? metric.squared_distance(goal.data(), q.data(), static_cast<int>(q.size()))
-                                           : (goal - q).squaredNorm());
+      least = std::min(least, metric.squared_distance(goal, q));
   };
   if (node < graph_->vertex_count)
     nearest(roadmap_.vertices().col(node));

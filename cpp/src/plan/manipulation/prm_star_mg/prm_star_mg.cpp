@@ -17,7 +17,7 @@ namespace {
 std::optional<Roadmap> first_roadmap(ManipulationInput& input, ManipulationResult& result) {
   if (input.roadmap) return *input.roadmap;
   const Stopwatch clock;
-  const Roadmap own = Roadmap::build(input.problem.group, input.options.prm.roadmap, input.monitor);
+  const Roadmap own = Roadmap::build(input.problem.group, roadmap_options(input.options), input.monitor);
   result.stats.roadmap_seconds = clock.seconds();
   input.clock.leave_out(result.stats.roadmap_seconds);
   if (input.monitor.stopped()) return std::nullopt;

@@ -49,7 +49,7 @@ class Refinement {
     Eigen::MatrixXd vertices(input_.problem.group.size(), kFirstVertexCount + round / kRoundsPerVertex);
     for (Eigen::Index v = 0; v < vertices.cols(); ++v)
       if (informed_.draw(rng, vertices.col(v).data()) < 0) return std::nullopt;
-    return roadmap_over(input_.problem.group, kNeighbours, std::move(vertices));
+    return roadmap_over(input_.problem.group, kNeighbours, std::move(vertices), input_.options.joint_weights);
   }
 
   const ManipulationInput& input_;

@@ -8,6 +8,7 @@ namespace mmgrasp::detail {
 namespace {
 
 constexpr double kLeastShare = 1e-5;  // Corners are not cut closer than this share of an edge.
+constexpr double kLiftProbability = 0.5;
 
 }  // namespace
 
@@ -43,7 +44,8 @@ void PathShortcutting::skip_vertices(int grasp) {
       const int a = from_start[from_start.size() - 1 - i], b = from_goal[from_goal.size() - 1 - k];
       const double cost =
           trees_.vertex(a).cost + trees_.vertex_distance(a, b) + trees_.vertex(b).cost + trees_.ends().cost(grasp);
-      if (cost >= incumbent_.cost_to_beat() || cost >= own_cost - kSameConfiguration) continue;
+      if (cost >= incumbent_.cost_to_beat() || cost >= own_cost - kSameConfiguration * trees_.ends().metric().unit())
+        continue;
       if (!is_free(a, b)) continue;
       connections_.add(a, b);
       return;
@@ -69,10 +71,13 @@ int PathShortcutting::improve_randomly(Rng& rng, int grasps) {
 
 bool PathShortcutting::shortcut_corner(Rng& rng, int grasp) {
   const std::size_t corner = 1 + rng.index(vertices_.size() - 2);
+  // Between two steps of its check an edge may cut a corner of an obstacle, and no part of it passes the check again.
+  // Points beside it on the side away from the obstacle do, and cost next to nothing.
+  const double lift = rng.uniform() < kLiftProbability ? std::pow(kLeastShare, rng.uniform()) : 0;
   made_.clear();
   for (const std::size_t neighbour : {corner - 1, corner + 1}) {
     const double share = draw_share(rng);
-    if (share < 1) made_.push_back(point_between(vertices_[corner], vertices_[neighbour], share));
+    if (share < 1) made_.push_back(point_beside_edge(corner, neighbour, share, lift));
   }
   return replace(grasp, corner - 1, corner + 1);
 }
@@ -144,10 +149,19 @@ double PathShortcutting::draw_share(Rng& rng) {
   return kind < 2 ? rng.uniform() : std::pow(kLeastShare, rng.uniform());
 }
 
-int PathShortcutting::point_between(int from, int to, double share) {
+int PathShortcutting::point_beside_edge(std::size_t corner, std::size_t neighbour, double share, double lift) {
   const JointMetric& metric = trees_.ends().metric();
-  const double *a = trees_.at(from), *b = trees_.at(to);
-  for (int k = 0; k < trees_.ends().dimension(); ++k) q_[k] = a[k] + (metric.nearest(k, a[k], b[k]) - a[k]) * share;
+  const double *at = trees_.at(vertices_[corner]), *to = trees_.at(vertices_[neighbour]);
+  const double *before = trees_.at(vertices_[corner - 1]), *after = trees_.at(vertices_[corner + 1]);
+  const auto length_to = [&](std::size_t i) {
+    return std::max(trees_.vertex_distance(vertices_[corner], vertices_[i]), kSameConfiguration);
+  };
+  const double scale = lift * length_to(neighbour);
+  const double by_before = scale / length_to(corner - 1), by_after = scale / length_to(corner + 1);
+  for (int k = 0; k < trees_.ends().dimension(); ++k) {
+    const auto off = [&](const double* q) { return metric.nearest(k, at[k], q[k]) - at[k]; };
+    q_[k] = at[k] + share * off(to) - by_before * off(before) - by_after * off(after);
+  }
   metric.wrap(q_.data());
   return trees_.add_configuration(q_.data());
 }

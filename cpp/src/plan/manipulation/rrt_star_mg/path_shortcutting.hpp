@@ -43,8 +43,9 @@ class MMGRASP_EXPORT PathShortcutting {
   bool replace(int grasp, std::size_t first, std::size_t last);
   /// How far a shortcut goes, in (0, 1].
   static double draw_share(Rng& rng);
-  /// A new configuration between two vertices.
-  int point_between(int from, int to, double share);
+  /// A new configuration on the edge from a corner to a neighbour, `share` of its length away from the corner, moved
+  /// out of the corner along its bisector by about `lift` of that length.
+  int point_beside_edge(std::size_t corner, std::size_t neighbour, double share, double lift);
 
   GraspTrees& trees_;
   TreeChecks& checks_;

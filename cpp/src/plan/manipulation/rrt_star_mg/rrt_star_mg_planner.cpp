@@ -29,6 +29,13 @@ namespace {
 constexpr int kReportInterval = 64;  // Samples.
 constexpr int kMaxUnseeded = 500;    // Samples after which the trees get the first path if they have none themselves.
 
+/// The options with their lengths as the metric measures them.
+RrtStarMgOptions in_units_of(const JointMetric& metric, RrtStarMgOptions options) {
+  options.range *= metric.unit();
+  options.gamma *= metric.unit();
+  return options;
+}
+
 /// Algorithm 5.13. Trees, informed sets and the incumbent are shared by those who sample, grow, connect and improve;
 /// everything else is theirs.
 class RrtStarMg {
@@ -37,7 +44,7 @@ class RrtStarMg {
   RrtStarMg(ManipulationInput& input, ManipulationResult& result, const RrtStarMgTuning& tuning)
       : input_(input),
         result_(result),
-        options_(input.options.rrt),
+        options_(in_units_of(input.metric, input.options.rrt)),
         tuning_(tuning),
         ends_(input.candidates.found()),
         informed_(ends_, input.problem.group.sample_lower(), input.problem.group.sample_upper()),
@@ -158,7 +165,7 @@ class RrtStarMg {
     int at = trees_.nearest_in_tree(GraspTrees::tree(grasp, GraspEnds::kStart), path.front().data());
     for (std::size_t i = 1; i + 1 < path.size(); ++i)
       at = trees_.add(at, trees_.add_configuration(ends_.metric().wrapped(path[i]).data()),
-                      (path[i] - path[i - 1]).norm());
+                      ends_.metric().norm(path[i] - path[i - 1]));
     if (connections_.best(grasp).connection < 0) connections_.list_grasp(grasp);
     connections_.add(at, trees_.nearest_in_tree(GraspTrees::tree(grasp, GraspEnds::kGoal), path.back().data()));
     update_incumbent(grasp);

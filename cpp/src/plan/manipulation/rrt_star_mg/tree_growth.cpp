@@ -51,7 +51,7 @@ int TreeGrowth::steer(int from, int target) {
   const double* a = trees_.at(from);
   const double* b = trees_.configuration(target);
   const double distance = std::sqrt(metric.squared_distance(a, b, d));
-  if (distance < kSameConfiguration) return -1;
+  if (distance < kSameConfiguration * metric.unit()) return -1;
   if (distance <= options_.range) return target;
   for (int i = 0; i < d; ++i) q_[i] = a[i] + (metric.nearest(i, a[i], b[i]) - a[i]) * (options_.range / distance);
   metric.wrap(q_.data());
@@ -117,7 +117,7 @@ void TreeGrowth::rewire(int made, const std::vector<Near>& near) {
     const GraspTrees::Vertex& other = trees_.vertex(entry.vertex);
     if (other.tree != own.tree || entry.vertex == own.parent || other.parent < 0) continue;
     const double cost = own.cost + entry.distance;
-    if (!(cost < other.cost - kSameConfiguration)) continue;
+    if (!(cost < other.cost - kSameConfiguration * trees_.ends().metric().unit())) continue;
     if (cost + trees_.ends().cost(grasp) + trees_.ends().distance(grasp, 1 - side, trees_.at(entry.vertex)) >=
         incumbent_.cost)
       continue;
@@ -136,7 +136,9 @@ void TreeGrowth::duplicate(int made, const std::vector<Near>& near) {
   for (std::size_t i = 0; i < near.size() && taken < tuning_.max_duplicates; ++i) {
     const Near entry = near[i];
     const GraspTrees::Vertex other = trees_.vertex(entry.vertex);
-    if (!other.alive || other.tree == own.tree || other.parent < 0 || entry.distance < kSameConfiguration) continue;
+    if (!other.alive || other.tree == own.tree || other.parent < 0 ||
+        entry.distance < kSameConfiguration * trees_.ends().metric().unit())
+      continue;
     const double cost = own.cost + entry.distance;
     const double whole =
         cost + trees_.ends().cost(grasp) + trees_.ends().distance(grasp, 1 - side, trees_.at(entry.vertex));

@@ -27,13 +27,13 @@ void TreeIndex::put(int block, int id, const double* q) {
 }
 
 void TreeIndex::insert(int id, const double* q) {
-  if (!metric_.any()) return insert_wrapped(id, q);
-  std::vector<double> wrapped(q, q + dimension_);
-  metric_.wrap(wrapped.data());
-  insert_wrapped(id, wrapped.data());
+  if (metric_.plain()) return insert_coordinates(id, q);
+  std::vector<double> coordinates(dimension_);
+  metric_.to_coordinates(q, coordinates.data(), dimension_);
+  insert_coordinates(id, coordinates.data());
 }
 
-void TreeIndex::insert_wrapped(int id, const double* q) {
+void TreeIndex::insert_coordinates(int id, const double* q) {
   ++size_;
   for (;;) {
     std::size_t at = 0;
@@ -89,7 +89,7 @@ void TreeIndex::split(int index) {
     for (int i = 0; i < block.count; ++i) {
       for (int a = 0; a < dimension_; ++a) q[a] = coordinates(b)[a * kBlock + i];
       --size_;
-      insert_wrapped(block.ids[i], q.data());
+      insert_coordinates(block.ids[i], q.data());
     }
     blocks_[b].count = 0;
   }

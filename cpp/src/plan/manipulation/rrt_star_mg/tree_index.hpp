@@ -13,7 +13,8 @@
 namespace mmgrasp::detail {
 
 /// Nearest-neighbour search over the vertices of any number of trees: one k-d tree with small buckets that grows and
-/// shrinks with them. Distances are the metric's. Each query says which vertices count.
+/// shrinks with them. It holds the metric's coordinates, so distances are the metric's. Each query says which vertices
+/// count.
 class MMGRASP_EXPORT TreeIndex {
  public:
   explicit TreeIndex(int dimension, JointMetric metric = {});
@@ -66,18 +67,23 @@ class MMGRASP_EXPORT TreeIndex {
   double* coordinates(int block) { return values_.data() + block * block_size_; }
   const double* coordinates(int block) const { return values_.data() + block * block_size_; }
   int new_block();
-  void insert_wrapped(int id, const double* q);
+  void insert_coordinates(int id, const double* q);
   void put(int block, int id, const double* q);
   void split(int node);
 
   /// Visits cells from the root down, nearer child first; `bound` may decrease meanwhile.
   template <class Visit>
   void search(const double* q, const double& bound, const Visit& visit) const {
-    if (!metric_.any()) return visit_node(0, q, 0, bound, visit);
-    query_.assign(q, q + dimension_);
-    metric_.wrap(query_.data());
-    cell_low_.assign(dimension_, -kPi);
-    cell_high_.assign(dimension_, kPi);
+    if (metric_.plain()) return visit_node(0, q, 0, bound, visit);
+    query_.resize(dimension_);
+    metric_.to_coordinates(q, query_.data(), dimension_);
+    if (!metric_.any()) return visit_node(0, query_.data(), 0, bound, visit);
+    cell_low_.resize(dimension_);
+    cell_high_.resize(dimension_);
+    for (const int i : metric_.wrapping()) {
+      cell_high_[i] = 0.5 * metric_.turn(i);
+      cell_low_[i] = -cell_high_[i];
+    }
     visit_node_around(0, query_.data(), 0, bound, visit);
   }
 
@@ -94,7 +100,8 @@ class MMGRASP_EXPORT TreeIndex {
       return visit_far(below ? node.high : node.low, node.axis, across, q, cell, bound, visit);
     }
     const double low = cell_low_[node.axis], high = cell_high_[node.axis];
-    const double to_low = off(q[node.axis], low, node.split), to_high = off(q[node.axis], node.split, high);
+    const double turn = metric_.turn(node.axis);
+    const double to_low = off(q[node.axis], low, node.split, turn), to_high = off(q[node.axis], node.split, high, turn);
     for (const bool lower : {to_low <= to_high, to_low > to_high}) {
       (lower ? cell_high_ : cell_low_)[node.axis] = node.split;
       visit_far(lower ? node.low : node.high, node.axis, lower ? to_low : to_high, q, cell, bound, visit);
@@ -114,10 +121,10 @@ class MMGRASP_EXPORT TreeIndex {
     offsets_[axis] = before;
   }
 
-  /// Distance of an angle from an interval of angles, all of them in [-pi, pi].
-  static double off(double angle, double low, double high) {
+  /// Distance of an angle from an interval of angles, all of them within half a turn of 0.
+  static double off(double angle, double low, double high, double turn) {
     if (angle >= low && angle <= high) return 0;
-    return angle < low ? std::min(low - angle, angle + kTwoPi - high) : std::min(angle - high, low + kTwoPi - angle);
+    return angle < low ? std::min(low - angle, angle + turn - high) : std::min(angle - high, low + turn - angle);
   }
 
   template <class Visit>
@@ -148,8 +155,9 @@ class MMGRASP_EXPORT TreeIndex {
     double squared[kBlock] = {};
     for (int axis = 0; axis < dimension_; ++axis, values += kBlock) {
       if (metric_.wraps(axis)) {
+        const double turn = metric_.turn(axis);
         for (int i = 0; i < kBlock; ++i) {
-          const double apart = std::abs(values[i] - q[axis]), least = std::min(apart, std::abs(kTwoPi - apart));
+          const double apart = std::abs(values[i] - q[axis]), least = std::min(apart, std::abs(turn - apart));
           squared[i] += least * least;
         }
       } else {
@@ -168,7 +176,7 @@ class MMGRASP_EXPORT TreeIndex {
   std::vector<double> values_;                                ///< Coordinates per block, one axis after the other.
   std::vector<Place> places_;                                 ///< Per id.
   mutable std::vector<double> offsets_;                       ///< Scratch: zero between searches.
-  mutable std::vector<double> query_, cell_low_, cell_high_;  ///< Scratch where angles wrap.
+  mutable std::vector<double> query_, cell_low_, cell_high_;  ///< Scratch where the metric is not plain.
 };
 
 }  // namespace mmgrasp::detail

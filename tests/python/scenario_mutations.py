@@ -25,6 +25,8 @@ from mmgrasp.part_supply.verification import differences
 HARMLESS: Harmless = {
     "name": ("any", "a title"),
     "part_types": ("key added", "a type that no tray holds"),
+    "trays[].targets": ("reordered", "the order of targets is the planner's to choose"),
+    "arrival_covariance[][]": ("type", "the text 1e-05 is written without quotes, and so it is the number"),
     "trays[].targets[]": ("swapped", "the order of targets is the planner's to choose"),
     "options.seed": ("any", "another seed is another search, and any answer is checked"),
     "options.threads": ("any", "plans do not depend on it"),

@@ -45,7 +45,7 @@ def test_changes_of_a_scenario_are_told(small: dict[str, Any], tmp_path: Path) -
     scenario = scenario_mutations.full_scenario(small)
     told = scenario_mutations.tells(scenario, tmp_path)
     assert not told(scenario)
-    result = try_out(scenario, told, of_each=1, every=5)
+    result = try_out(scenario, told, of_each=4, every=7)
     assert result.tried > 250
     assert not unexplained(result, scenario_mutations.HARMLESS)
     assert len(result.left) <= 0.05 * result.tried

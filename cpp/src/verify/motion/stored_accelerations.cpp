@@ -35,7 +35,7 @@ CubicEnds cubic_ends(const CheckedMotion& motion, std::size_t i, Eigen::Index j)
 double excess(const CheckedMotion& motion, std::size_t i, Eigen::Index j, double limit) {
   const double said = motion.accelerations[i][j];
   const std::size_t last = motion.times.size() - 1;
-  double off = mmgrasp::detail::kInfinity, disagreement = off, rounding = 0;
+  double off = mmgrasp::detail::kInfinity, disagreement = 0, rounding = 0;
   CubicEnds before, after;
   if (i > 0) {
     before = cubic_ends(motion, i - 1, j);

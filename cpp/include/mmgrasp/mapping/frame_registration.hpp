@@ -17,25 +17,25 @@ struct MMGRASP_EXPORT RegistrationOptions {
   double max_correction = 4.0;  ///< Farther from the given pose, in its own standard deviations, is refused; > 0.
   /// Directions along which the surface moves by less than this share of the motion (in the mean of squares) are left
   /// as given: a plane slid in itself, a cylinder turned about its axis; in [0, 1).
-  double min_observability = 0.003;
+  double min_observability = 0.0015;
   int threads = 0;  ///< 0: all. The result does not depend on it.
   void check() const;
 };
 
 /// Where a frame's camera stood, by what the map holds.
 struct MMGRASP_EXPORT FrameRegistration {
-  bool registered = false;               ///< Else the pose is the given one, and `reason` says why.
+  bool registered = false;  ///< Else the pose is the given one, and `reason` says why.
   Pose T_world_camera = Pose::Identity();
   /// Of the error of T_world_camera, as in FrameUncertainty: the given one where nothing was observed.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
-  int compared = 0;          ///< Pixels that were looked for in the map.
-  int matched = 0;           ///< Of these, pixels that met its surface and agree with it in the end.
-  int observed = 0;          ///< Directions of the six that the surface fixes.
-  int iterations = 0;        ///< Of Gauss-Newton.
-  double rms_before = 0;     ///< Distance of the matched pixels from the map's surface at the given pose [m].
-  double rms = 0;            ///< The same at the registered one [m].
-  double correction = 0;     ///< From the given pose, in its standard deviations.
-  std::string reason;        ///< Why it was refused, or empty.
+  int compared = 0;       ///< Pixels that were looked for in the map.
+  int matched = 0;        ///< Of these, pixels that met its surface and agree with it in the end.
+  int observed = 0;       ///< Directions of the six that the surface fixes.
+  int iterations = 0;     ///< Of Gauss-Newton.
+  double rms_before = 0;  ///< Distance of the matched pixels from the map's surface at the given pose [m].
+  double rms = 0;         ///< The same at the registered one [m].
+  double correction = 0;  ///< From the given pose, in its standard deviations.
+  std::string reason;     ///< Why it was refused, or empty.
 };
 
 /// Moves a frame's pose so that its depths meet the map: point to plane, by Gauss-Newton on the map's own field where

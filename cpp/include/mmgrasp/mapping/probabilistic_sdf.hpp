@@ -41,8 +41,8 @@ struct MMGRASP_EXPORT SdfOptions {
   /// and what is put back is there again, after at most twice as many; in [1, 254]. The order of frames matters for
   /// what moved.
   int persistence = 254;
-  double max_memory = 2e9;      ///< A frame that would need more is refused before anything is allocated [bytes]; > 0.
-  int threads = 0;              ///< 0: all. The map does not depend on it.
+  double max_memory = 2e9;  ///< A frame that would need more is refused before anything is allocated [bytes]; > 0.
+  int threads = 0;          ///< 0: all. The map does not depend on it.
   void check() const;
 };
 

@@ -22,7 +22,8 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 constexpr int kFewest = 100;          // matched pixels that fix a pose
 constexpr double kLeastCosine = 0.7;  // of the pixel's normal and the map's: else they are two surfaces
 constexpr double kTukey = 4.685;      // 95 % efficient on normal errors
-constexpr double kConverged = 1e-5;   // [m], of a point at the pixels' usual distance from their centre
+constexpr double kSettled = 0.002;    // [m], of the trusted distance, which halves in each iteration
+constexpr double kConverged = 3e-5;   // [m], of a point at the pixels' usual distance from their centre
 
 /// A pixel of the frame, in the camera's frame.
 struct FramePoint {
@@ -95,7 +96,8 @@ class Matcher {
     for (Eigen::Index k = 0; k < count; ++k) {
       // No surface far in front of the point hides that around it.
       const Vector3d ray = (world.col(far[k]) - T.translation()).normalized();
-      origins.col(k) = world.col(far[k]) - std::min(2 * options_.max_distance, (world.col(far[k]) - T.translation()).norm()) * ray;
+      origins.col(k) =
+          world.col(far[k]) - std::min(2 * options_.max_distance, (world.col(far[k]) - T.translation()).norm()) * ray;
       directions.col(k) = ray;
     }
     const SdfHits hits = sdf_.cast_rays(origins, directions, options_.threads);
@@ -166,9 +168,10 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// Tukey's weights, by the spread of the residuals where that is larger than their standard deviations.
+/// Tukey's weights, by the spread of the residuals where that is larger than their standard deviations. All within
+/// `trusted` [m] count: while the pose is off, a large plane would have small parts on it look wrong.
 System assemble(const std::vector<FramePoint>& points, const std::vector<Match>& matches, const Motions& motions,
-                const Pose& T) {
+                const Pose& T, double trusted) {
   System out;
   std::vector<double> ratios;
   for (const Match& match : matches) {
@@ -179,11 +182,11 @@ System assemble(const std::vector<FramePoint>& points, const std::vector<Match>&
   for (std::size_t i = 0; i < matches.size(); ++i) {
     const Match& match = matches[i];
     if (!match.found) continue;
-    const double u = match.distance / std::sqrt(match.variance) / (kTukey * spread);
+    const double u = match.distance / std::max(trusted, std::sqrt(match.variance) * kTukey * spread);
     if (std::abs(u) >= 1) continue;
     const double weight = (1 - u * u) * (1 - u * u) / match.variance;
-    // Noise of the map's normals would fix what nothing fixes. That of the frame's is independent of it, and the product
-    // of the two has none in the mean.
+    // Noise of the map's normals would fix what nothing fixes. That of the frame's is independent of it, and the
+    // product of the two has none in the mean.
     const Vector3d point = T * points[i].point;
     const Vector6 by_map = motions.row(point, match.normal),
                   by_frame = motions.row(point, T.linear() * points[i].normal);
@@ -215,9 +218,10 @@ class Registration {
     const Motions motions(points_, given_);
     const Matrix6 from_pose = motions.to_pose.inverse();
     const Matrix6 prior = (from_pose * covariance_ * from_pose.transpose()).inverse();
-    for (;; ++out.iterations) {
+    double trusted = 2 * options_.max_distance;
+    for (;; ++out.iterations, trusted *= 0.5) {
       const Pose T = moved(given_, motions.to_pose * error);
-      const System system = assemble(points_, matcher_.at(T), motions, T);
+      const System system = assemble(points_, matcher_.at(T), motions, T, trusted);
       out.matched = system.matched;
       if (system.matched < std::max(kFewest, static_cast<int>(options_.min_overlap * out.compared))) {
         return refuse(out, "only " + std::to_string(system.matched) + " of " + std::to_string(out.compared) +
@@ -227,15 +231,16 @@ class Registration {
       if (out.iterations == 0) out.rms_before = out.rms;
       const Eigen::SelfAdjointEigenSolver<Matrix6> directions(system.scatter);
       out.observed = static_cast<int>((directions.eigenvalues().array() > options_.min_observability).count());
-      const Eigen::Matrix<double, 6, Eigen::Dynamic> V = directions.eigenvectors().rightCols(out.observed);
-      const Eigen::MatrixXd A = V.transpose() * (system.information + prior) * V;
-      const Vector6 aim = error + V * A.ldlt().solve(-V.transpose() * (system.gradient + prior * error));
-      // Only what is observed may differ from the given pose.
-      const Vector6 next = V * (V.transpose() * aim);
-      const double step = (next - error).norm();
-      error = next;
-      if (step < kConverged) {
-        out.covariance = posterior(system, V, prior, motions);
+      // Only what is observed speaks; what it says is shared out as the given covariance makes it likely.
+      const Matrix6 V = directions.eigenvectors();
+      const Vector6 kept = (directions.eigenvalues().array() > options_.min_observability).cast<double>();
+      const Matrix6 observed = V * kept.asDiagonal() * V.transpose();
+      const Matrix6 information = observed * system.information * observed;
+      const Vector6 pull = observed * system.gradient + prior * error;
+      const Vector6 step = -(information + prior).inverse() * pull;
+      error += step;
+      if (step.norm() < kConverged && trusted < kSettled) {
+        out.covariance = posterior(information / misfit(system) + prior, motions);
         out.correction = std::sqrt(error.dot(prior * error));
         if (out.correction > options_.max_correction) {
           return refuse(out, "the pose that fits is " + std::to_string(out.correction) +
@@ -260,14 +265,12 @@ class Registration {
     return out;
   }
 
-  /// Of the pose's error: that of the given one, less what the observed directions tell.
-  Matrix6 posterior(const System& system, const Eigen::Matrix<double, 6, Eigen::Dynamic>& V, const Matrix6& prior,
-                    const Motions& motions) const {
-    const double misfit = std::max(1.0, system.chi / std::max(1, system.matched - 6));
-    const Matrix6 observed = V * (V.transpose() * system.information * V / misfit) * V.transpose();
-    const Matrix6 covariance = (prior + observed).inverse();
-    const Matrix6 out = motions.to_pose * covariance * motions.to_pose.transpose();
-    return 0.5 * (out + out.transpose());
+  /// How much larger the squared distances are than their variances say.
+  static double misfit(const System& system) { return std::max(1.0, system.chi / std::max(1, system.matched - 6)); }
+
+  static Matrix6 posterior(const Matrix6& information, const Motions& motions) {
+    const Matrix6 covariance = motions.to_pose * information.inverse() * motions.to_pose.transpose();
+    return 0.5 * (covariance + covariance.transpose());
   }
 
   const Matcher matcher_;
@@ -298,8 +301,8 @@ FrameRegistration register_frame(const ProbabilisticSdf& sdf, const DepthImage& 
   require(sdf.frames() > 0, "sdf", "a map without a frame", "must hold what the frame is registered to");
   detail::check_frame(given, camera, uncertainty);
   const Eigen::LLT<Matrix6> factor(uncertainty.pose_covariance);
-  require(factor.info() == Eigen::Success, "pose_covariance",
-          "not positive definite", "must say for every direction how far the pose may be off");
+  require(factor.info() == Eigen::Success, "pose_covariance", "not positive definite",
+          "must say for every direction how far the pose may be off");
   DepthImage image = given;
   image.clean();
   image.camera = camera.intrinsics;

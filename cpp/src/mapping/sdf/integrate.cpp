@@ -361,7 +361,8 @@ class FrameIntegration {
   void count_all_free(VoxelBlock& voxels) const {
     for (int i = 0; i < kBlockVoxels; ++i) {
       if (voxels.near[i] == 0) continue;
-      const int most = voxels.near[i] + grid_.options.persistence, frames = std::max<int>(voxels.free[i], std::min(most, voxels.free[i] + 1));
+      const int most = voxels.near[i] + grid_.options.persistence,
+                frames = std::max<int>(voxels.free[i], std::min(most, voxels.free[i] + 1));
       voxels.free[i] = static_cast<std::uint8_t>(std::min(255, frames));
     }
     voxels.looked_through = true;

@@ -145,9 +145,9 @@ __attribute__((target("avx2"))) __m256 contradicting(const KernelFrame& f, const
                                                      __m256 off, __m256 old, __m256 weight) {
   const __m256i count = _mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(frames)));
   const __m256 sure = _mm256_castsi256_ps(_mm256_cmpgt_epi32(count, _mm256_set1_epi32(kSure - 1)));
-  const __m256 far = _mm256_cmp_ps(_mm256_mul_ps(_mm256_mul_ps(off, off), _mm256_mul_ps(old, weight)),
-                                   _mm256_mul_ps(_mm256_set1_ps(f.gate_squared), _mm256_add_ps(old, weight)),
-                                   _CMP_GT_OQ);
+  const __m256 far =
+      _mm256_cmp_ps(_mm256_mul_ps(_mm256_mul_ps(off, off), _mm256_mul_ps(old, weight)),
+                    _mm256_mul_ps(_mm256_set1_ps(f.gate_squared), _mm256_add_ps(old, weight)), _CMP_GT_OQ);
   const __m256 apart =
       _mm256_cmp_ps(_mm256_andnot_ps(_mm256_set1_ps(-0.0f), off), _mm256_set1_ps(f.gate_least), _CMP_GT_OQ);
   return _mm256_and_ps(_mm256_and_ps(near, sure), _mm256_and_ps(far, apart));

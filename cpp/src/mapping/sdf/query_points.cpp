@@ -9,8 +9,8 @@ namespace mmgrasp::detail {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr int kAhead = 16;           // points that are fetched before they are needed
-constexpr int kFewestOfBlock = 2;    // points a block, in the mean, from which sorting pays
+constexpr int kAhead = 16;         // points that are fetched before they are needed
+constexpr int kFewestOfBlock = 2;  // points a block, in the mean, from which sorting pays
 
 void answer(SdfSampler& sampler, const Eigen::Matrix3Xd& points, Eigen::Index i, SdfValues& out) {
   const Sample sample = sampler.at(points.col(i));

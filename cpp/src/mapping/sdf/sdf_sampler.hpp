@@ -91,7 +91,8 @@ class SdfSampler {
   void prefetch(const Eigen::Vector3d& point) {
     const int block = block_at(point);
     if (block < 0) return;
-    const int y = static_cast<int>(std::floor(point.y() * scale_)), z = static_cast<int>(std::floor(point.z() * scale_));
+    const int y = static_cast<int>(std::floor(point.y() * scale_)),
+              z = static_cast<int>(std::floor(point.z() * scale_));
     for (const auto& layer : grid_.layers) {
       if (!layer[block]) continue;
       const int row = ((z & 7) << 3) + (y & 7);

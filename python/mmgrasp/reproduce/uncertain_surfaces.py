@@ -64,7 +64,9 @@ def measure_noise(noise: float, frames: int, seed: int) -> dict[str, Any]:
     sdf = bunny_map(noise, frames, seed)
     points, _, sigma = sdf.points()
     above = points[:, 2] > 0.01
-    found = _core.synthesize_grasps(sdf, gripper(), table=0.0, samples=1000, table_tolerance=0.006, seed=seed, threads=1)
+    found = _core.synthesize_grasps(
+        sdf, gripper(), table=0.0, samples=1000, table_tolerance=0.006, seed=seed, threads=1
+    )
     out: dict[str, Any] = {
         "sigma": float(np.median(sigma[above])),
         "error": float(np.sqrt(np.mean(distance_to(BUNNY, points[above]) ** 2))),
@@ -124,7 +126,9 @@ def run_noise(context: Context) -> Result:
             apart[0] < 0.02 and apart[1] < 20,
         )
     result.notes += [f"{100 * item['noise']:g} cm: {ours['why']}" for item, ours in zip(items, found, strict=True)]
-    result.notes.append("P3 prints pictures, no numbers; its object is a bunny, ours a body, head, tail and two ears of capsules and balls.")
+    result.notes.append(
+        "P3 prints pictures, no numbers; its object is a bunny, ours a body, head, tail and two ears of capsules and balls."
+    )
     return result
 
 
@@ -148,7 +152,9 @@ NOISE = 0.002
 def car_points(count: int, seed: int) -> dict[str, np.ndarray]:
     """Points of the roof and of the outer faces of the wheels."""
     rng = np.random.default_rng(seed)
-    roof = np.column_stack([rng.uniform(-0.032, 0.012, count), rng.uniform(-0.016, 0.016, count), np.full(count, 0.072)])
+    roof = np.column_stack(
+        [rng.uniform(-0.032, 0.012, count), rng.uniform(-0.016, 0.016, count), np.full(count, 0.072)]
+    )
     angle, radius = rng.uniform(0, 2 * np.pi, count), 0.010 * np.sqrt(rng.uniform(0, 1, count))
     side = rng.choice([-1.0, 1.0], count)
     wheels = np.column_stack(
@@ -168,7 +174,9 @@ def measure_views(frames: int, seed: int) -> dict[str, Any]:
         sdf.integrate(seen(CAR, 2.4 * k, up, NOISE, rng), camera)
         for name, points in places.items():
             _, sigma, known = sdf.query(points)
-            out[name].append({"known": float(known.mean()), "sigma": float(np.median(sigma[known])) if known.any() else None})
+            out[name].append(
+                {"known": float(known.mean()), "sigma": float(np.median(sigma[known])) if known.any() else None}
+            )
     return out
 
 
@@ -242,7 +250,9 @@ def run_criteria(context: Context) -> Result:
     for name in CRITERIA:
         of = [found[k][name] for k in names if found[k]["found"]]
         if found[name]["found"]:
-            result.trend(f"{name} alone makes its own share the largest of all five", found[name][name] >= max(of) - 0.02)
+            result.trend(
+                f"{name} alone makes its own share the largest of all five", found[name][name] >= max(of) - 0.02
+            )
     if found["all"]["found"]:
         result.trend(
             "with P3's weights every share is at least half of what its criterion alone reaches",

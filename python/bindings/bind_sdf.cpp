@@ -54,7 +54,7 @@ const std::vector<OptionField<SdfOptions>>& sdf_fields() {
           "depths farther than this many standard deviations from what their neighbours, or three earlier frames, "
           "say are left out; 0: none are"),
       option<O>("persistence", &O::persistence,
-                "by how many frames a surface can be ahead of those that looked through it, or behind"),
+                "most frames by which a surface can be ahead of those that looked through it, or behind"),
       option<O>("max_memory", &O::max_memory, "a frame that would need more is refused [bytes]"),
       option<O>("threads", &O::threads, "0: all")};
   return fields;
@@ -100,7 +100,7 @@ const std::vector<OptionField<RegistrationOptions>>& registration_fields() {
   using O = RegistrationOptions;
   static const std::vector<OptionField<O>> fields{
       option<O>("max_points", &O::max_points, "pixels that are compared, spread evenly; at least 100"),
-      option<O>("max_iterations", &O::max_iterations, "of Gauss-Newton"),
+      option<O>("max_iterations", &O::max_iterations, "steps of Gauss-Newton"),
       option<O>("max_distance", &O::max_distance, "pixels farther from the map's surface are not compared [m]"),
       option<O>("min_overlap", &O::min_overlap, "share of the compared pixels that must meet the map"),
       option<O>("max_correction", &O::max_correction,
@@ -120,9 +120,9 @@ void bind_registration(py::module_& m) {
       .def_readonly("covariance", &R::covariance,
                     "(6, 6) of the pose's error, as `pose_covariance` of ProbabilisticSdf.integrate().")
       .def_readonly("compared", &R::compared, "Pixels that were looked for in the map.")
-      .def_readonly("matched", &R::matched, "Of these, pixels that met its surface and agree with it in the end.")
+      .def_readonly("matched", &R::matched, "Compared pixels that met its surface and agree with it in the end.")
       .def_readonly("observed", &R::observed, "Directions of the six that the surface fixes.")
-      .def_readonly("iterations", &R::iterations, "Of Gauss-Newton.")
+      .def_readonly("iterations", &R::iterations, "Steps of Gauss-Newton.")
       .def_readonly("rms_before", &R::rms_before, "Distance of the matched pixels from the map at the given pose [m].")
       .def_readonly("rms", &R::rms, "The same at the registered one [m].")
       .def_readonly("correction", &R::correction, "From the given pose, in its standard deviations.")

@@ -219,7 +219,7 @@ void bind_next_view(py::module_& m) {
   py::class_<C>(m, "ViewCandidate", "A camera pose and what is expected of it.")
       .def_property_readonly(
           "T_world_camera", [](const C& c) { return Eigen::Matrix4d(c.T_world_camera.matrix()); }, "(4, 4)")
-      .def_readonly("probability", &C::probability, "Of the best grasp once the frame is in the map.")
+      .def_readonly("probability", &C::probability, "Best grasp's, once the frame is in the map.")
       .def_readonly("certain", &C::certain, "How much surface would be certain, in shares of the candidate with most.")
       .def_readonly("unseen", &C::unseen, "Share of the object's pixels that would show what the map does not know.")
       .def_readonly("q", &C::q, "The arm's configuration; empty without an arm.")
@@ -227,7 +227,7 @@ void bind_next_view(py::module_& m) {
   using V = NextView;
   py::class_<V>(m, "NextView", "Where to look next.")
       .def_readonly("outcome", &V::outcome, "solved, not_found (the arm reaches no pose) or stopped.")
-      .def_readonly("probability_now", &V::probability_now, "Of the best grasp in the map as it is; 0: there is none.")
+      .def_readonly("probability_now", &V::probability_now, "Best grasp's in the map as it is; 0: there is none.")
       .def_readonly("candidates", &V::candidates, "Those within reach, the best first.")
       .def_readonly("arm", &V::arm, "Why the arm did not reach others.")
       .def("__repr__",

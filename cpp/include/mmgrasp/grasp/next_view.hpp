@@ -14,7 +14,7 @@ namespace mmgrasp {
 /// Which camera poses next_view() compares, and how.
 struct MMGRASP_EXPORT NextViewOptions {
   int candidates = 24;           ///< Poses on the sphere around the object; > 0.
-  double distance = 0.35;        ///< Of the camera from the middle of the object [m]; > 0.
+  double distance = 0.35;        ///< Way from the camera to the middle of the object [m]; > 0.
   double min_elevation = 0.35;   ///< Lowest camera above the horizontal through the middle, in [-pi/2, pi/2) [rad].
   double max_elevation = 1.35;   ///< Highest; above min_elevation, at most pi/2 [rad].
   int draws = 2;                 ///< Frames imagined of each pose, each with noise of its own; > 0.
@@ -29,7 +29,7 @@ struct MMGRASP_EXPORT NextViewOptions {
 /// A camera pose and what is expected of it.
 struct MMGRASP_EXPORT ViewCandidate {
   Pose T_world_camera = Pose::Identity();
-  double probability = 0;  ///< Of the best grasp once the frame is in the map, in the mean over the draws.
+  double probability = 0;  ///< Best grasp's, once the frame is in the map, in the mean over the draws.
   double certain = 0;      ///< How much surface would be certain, in shares of the candidate with most.
   double unseen = 0;       ///< Share of the object's pixels that would show what the map does not know.
   Eigen::VectorXd q;       ///< The arm's configuration; empty without an arm.
@@ -38,7 +38,7 @@ struct MMGRASP_EXPORT ViewCandidate {
 /// Where to look next.
 struct MMGRASP_EXPORT NextView {
   Outcome outcome = Outcome::not_found;   ///< solved, not_found (the arm reaches no pose) or stopped.
-  double probability_now = 0;             ///< Of the best grasp in the map as it is; 0: there is none.
+  double probability_now = 0;             ///< Best grasp's in the map as it is; 0: there is none.
   std::vector<ViewCandidate> candidates;  ///< Those within reach, the best first.
   Rejections arm;                         ///< Why the arm did not reach others.
 };
@@ -49,8 +49,9 @@ struct MMGRASP_EXPORT NextView {
 /// those it does not reach. From each a frame is imagined: the map's surface where it is known, and where it is not the
 /// hull of what was seen, down to the table, since the back of a part is about where its rims are. Its depths get the
 /// camera's noise, it is integrated into a copy of the map, and grasps are searched for there. Best is the largest
-/// probability of (4.9) in the mean over the draws; poses that differ by less than 0.01 are ordered by how much they
-/// show that is unknown. Throws InvalidInput as synthesize_grasps() does, and on options out of range.
+/// sum of the best grasp's probability (4.9), in the mean over the draws, and of the share of surface that would be
+/// certain: until a hand fits, the probability is 0 everywhere and tells no view from another. Throws InvalidInput as
+/// synthesize_grasps() does, and on options out of range.
 MMGRASP_EXPORT NextView next_view(const ProbabilisticSdf& map, const HandModel& hand, const DepthCamera& camera,
                                   const NextViewOptions& options = {}, const Monitor& monitor = {},
                                   const ArmReach& arm = {});

@@ -11,7 +11,7 @@ namespace mmgrasp {
 /// How register_frame() searches and what it accepts.
 struct MMGRASP_EXPORT RegistrationOptions {
   int max_points = 4000;        ///< Pixels that are compared, spread evenly over the image; >= 100.
-  int max_iterations = 30;      ///< Of Gauss-Newton; > 0.
+  int max_iterations = 30;      ///< Steps of Gauss-Newton; > 0.
   double max_distance = 0.05;   ///< Pixels farther from the map's surface are not compared with it [m]; > 0.
   double min_overlap = 0.3;     ///< Share of the compared pixels that must meet the map; in (0, 1].
   double max_correction = 4.0;  ///< Farther from the given pose, in its own standard deviations, is refused; > 0.
@@ -26,12 +26,12 @@ struct MMGRASP_EXPORT RegistrationOptions {
 struct MMGRASP_EXPORT FrameRegistration {
   bool registered = false;  ///< Else the pose is the given one, and `reason` says why.
   Pose T_world_camera = Pose::Identity();
-  /// Of the error of T_world_camera, as in FrameUncertainty: the given one where nothing was observed.
+  /// Covariance of the error of T_world_camera, as in FrameUncertainty: the given one where nothing was observed.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
   int compared = 0;       ///< Pixels that were looked for in the map.
-  int matched = 0;        ///< Of these, pixels that met its surface and agree with it in the end.
+  int matched = 0;        ///< Compared pixels that met its surface and agree with it in the end.
   int observed = 0;       ///< Directions of the six that the surface fixes.
-  int iterations = 0;     ///< Of Gauss-Newton.
+  int iterations = 0;     ///< Steps of Gauss-Newton.
   double rms_before = 0;  ///< Distance of the matched pixels from the map's surface at the given pose [m].
   double rms = 0;         ///< The same at the registered one [m].
   double correction = 0;  ///< From the given pose, in its standard deviations.

@@ -37,9 +37,9 @@ struct MMGRASP_EXPORT SdfOptions {
   /// Depths farther than this many standard deviations from what their neighbours, or three earlier frames, say are
   /// left out; >= 3, or 0: none are, as in P3. With a gate the order of frames matters where it shuts.
   double outlier_gate = 0;
-  /// By how many frames a surface can be ahead of those that looked through it, or behind: what is taken away is gone,
-  /// and what is put back is there again, after at most twice as many; in [1, 254]. The order of frames matters for
-  /// what moved.
+  /// Most frames by which a surface can be ahead of those that looked through it, or behind: what is taken away is
+  /// gone, and what is put back is there again, after at most twice as many; in [1, 254]. The order of frames matters
+  /// for what moved.
   int persistence = 254;
   double max_memory = 2e9;  ///< A frame that would need more is refused before anything is allocated [bytes]; > 0.
   int threads = 0;          ///< 0: all. The map does not depend on it.

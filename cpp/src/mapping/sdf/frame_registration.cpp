@@ -28,7 +28,7 @@ constexpr double kConverged = 3e-5;   // [m], of a point at the pixels' usual di
 /// A pixel of the frame, in the camera's frame.
 struct FramePoint {
   Vector3d point, normal;
-  double variance = 0;  ///< Of the point along the normal [m^2].
+  double variance = 0;  ///< Variance of the point along the normal [m^2].
 };
 
 /// Pixels with a plane, spread evenly.
@@ -54,7 +54,7 @@ std::vector<FramePoint> frame_points(const DepthImage& image, const detail::Fram
 struct Match {
   bool found = false;
   double distance = 0, variance = 0;
-  Vector3d normal;  ///< Of the map's surface.
+  Vector3d normal;  ///< The map's surface normal.
 };
 
 /// The frame's points against the map.
@@ -127,7 +127,7 @@ Pose moved(const Pose& T, const Vector6& by) {
 /// The six motions about the middle of the frame's points, rotations as the way of a point at their usual distance
 /// from it: so all six are metres, and directions that the surface does not fix show.
 struct Motions {
-  Vector3d middle;  ///< In the world [m].
+  Vector3d middle;  ///< Place in the world [m].
   double arm = 1;   ///< Usual distance of the points from their middle [m].
   Matrix6 to_pose;  ///< From these motions to those of FrameUncertainty.
 

@@ -30,7 +30,7 @@ struct KernelFrame {
   int width = 0, height = 0;
   float fx = 0, fy = 0, cx = 0, cy = 0;  ///< cx, cy with 0.5 added: pixel = floor of the projection.
   float nearest = 0;                     ///< [m]
-  float gate_squared = 0;                ///< Of SdfOptions::outlier_gate; 0: no gate.
+  float gate_squared = 0;                ///< Square of SdfOptions::outlier_gate; 0: no gate.
   float gate_least = 0;                  ///< Differences below this are no contradiction [m].
   int persistence = 254;                 ///< Most that `near` and `free` differ by.
   float step[3][3] = {};                 ///< Step of one voxel along the map's axis [k], in the camera's frame [m].

@@ -346,7 +346,7 @@ class SdfSampler {
   const SdfGrid& grid_;
   const double scale_;
   const float voxel_;
-  bool systematic_ = false;  ///< Of any camera.
+  bool systematic_ = false;  ///< Some camera has a systematic error.
   BlockNeighbours around_cell_, around_stencil_;
   BlockKey last_key_;
   int last_ = -1;

@@ -4,6 +4,7 @@
 
 #include "batch.hpp"
 #include "bindings.hpp"
+#include "mmgrasp/mapping/frame_registration.hpp"
 #include "mmgrasp/mapping/probabilistic_sdf.hpp"
 
 namespace mmgrasp::python {
@@ -48,6 +49,12 @@ const std::vector<OptionField<SdfOptions>>& sdf_fields() {
        [](const O& o) -> py::object { return py::str(distance_names()[static_cast<std::size_t>(o.distance)]); },
        "to the plane through the measured point, or along the ray as in P3 (4.12)"},
       option<O>("max_incidence", &O::max_incidence, "what is seen more slanted is not used [rad]"),
+      option<O>(
+          "outlier_gate", &O::outlier_gate,
+          "depths farther than this many standard deviations from what their neighbours, or three earlier frames, "
+          "say are left out; 0: none are"),
+      option<O>("persistence", &O::persistence,
+                "most frames by which a surface can be ahead of those that looked through it, or behind"),
       option<O>("max_memory", &O::max_memory, "a frame that would need more is refused [bytes]"),
       option<O>("threads", &O::threads, "0: all")};
   return fields;
@@ -70,6 +77,86 @@ Flags sdf_flags(const std::vector<std::uint8_t>& values) {
   py::array_t<bool> out(static_cast<py::ssize_t>(values.size()));
   for (std::size_t i = 0; i < values.size(); ++i) out.mutable_data()[i] = values[i] != 0;
   return out;
+}
+
+FrameUncertainty uncertainty_argument(const DepthImage& image, const OptionalArray& pose_covariance,
+                                      const OptionalArray& sigma) {
+  FrameUncertainty out;
+  if (!pose_covariance.is_none()) {
+    const Eigen::MatrixXd C = matrix_argument(pose_covariance, "pose_covariance", 6);
+    require(C.rows() == 6, "pose_covariance", static_cast<double>(C.rows()), "must have 6 rows");
+    out.pose_covariance = C;
+  }
+  if (!sigma.is_none()) {
+    const Eigen::MatrixXd s = matrix_argument(sigma, "sigma", image.camera.width);
+    for (Eigen::Index v = 0; v < s.rows(); ++v) {
+      for (Eigen::Index u = 0; u < s.cols(); ++u) out.sigma.push_back(static_cast<float>(s(v, u)));
+    }
+  }
+  return out;
+}
+
+const std::vector<OptionField<RegistrationOptions>>& registration_fields() {
+  using O = RegistrationOptions;
+  static const std::vector<OptionField<O>> fields{
+      option<O>("max_points", &O::max_points, "pixels that are compared, spread evenly; at least 100"),
+      option<O>("max_iterations", &O::max_iterations, "steps of Gauss-Newton"),
+      option<O>("max_distance", &O::max_distance, "pixels farther from the map's surface are not compared [m]"),
+      option<O>("min_overlap", &O::min_overlap, "share of the compared pixels that must meet the map"),
+      option<O>("max_correction", &O::max_correction,
+                "farther from the given pose, in its standard deviations, is refused"),
+      option<O>("min_observability", &O::min_observability,
+                "directions along which the surface moves by less than this share of the motion stay as given"),
+      option<O>("threads", &O::threads, "0: all")};
+  return fields;
+}
+
+void bind_registration(py::module_& m) {
+  using R = FrameRegistration;
+  py::class_<R>(m, "FrameRegistration", "Where a frame's camera stood, by what a map holds.")
+      .def_readonly("registered", &R::registered, "Else the pose is the given one, and `reason` says why.")
+      .def_property_readonly(
+          "T_world_camera", [](const R& r) { return Eigen::Matrix4d(r.T_world_camera.matrix()); }, "(4, 4)")
+      .def_readonly("covariance", &R::covariance,
+                    "(6, 6) of the pose's error, as `pose_covariance` of ProbabilisticSdf.integrate().")
+      .def_readonly("compared", &R::compared, "Pixels that were looked for in the map.")
+      .def_readonly("matched", &R::matched, "Compared pixels that met its surface and agree with it in the end.")
+      .def_readonly("observed", &R::observed, "Directions of the six that the surface fixes.")
+      .def_readonly("iterations", &R::iterations, "Steps of Gauss-Newton.")
+      .def_readonly("rms_before", &R::rms_before, "Distance of the matched pixels from the map at the given pose [m].")
+      .def_readonly("rms", &R::rms, "The same at the registered one [m].")
+      .def_readonly("correction", &R::correction, "From the given pose, in its standard deviations.")
+      .def_readonly("reason", &R::reason, "Why it was refused, or empty.")
+      .def("__repr__", [](const R& r) {
+        return "FrameRegistration(" +
+               (r.registered ? std::to_string(r.matched) + " of " + std::to_string(r.compared) + " pixels match"
+                             : "refused: " + r.reason) +
+               ")";
+      });
+  m.def(
+      "register_frame",
+      [](const ProbabilisticSdf& sdf, const DepthImage& image, const DepthCamera& camera,
+         const ArrayLike& pose_covariance, const OptionalArray& sigma, const py::kwargs& options) {
+        const auto chosen = read_options(registration_fields(), options, "register_frame");
+        const FrameUncertainty uncertainty =
+            uncertainty_argument(image, py::reinterpret_borrow<OptionalArray>(pose_covariance), sigma);
+        py::gil_scoped_release release;
+        return register_frame(sdf, image, camera, uncertainty, chosen);
+      },
+      "sdf"_a, "image"_a, "camera"_a, py::kw_only(), "pose_covariance"_a, "sigma"_a = py::none(),
+      ("Moves a frame's pose so that its depths meet the map: point to plane on the map's field, Gauss-Newton, "
+       "weighted by\n"
+       "the variances of both. The given pose counts with `pose_covariance` (6, 6), which must be positive definite: "
+       "it says\n"
+       "how far the pose may be moved. What the surface does not fix (a plane slid in itself) is not moved. The map "
+       "stays as\n"
+       "it is; integrate the frame with the pose and the covariance that come back. What all frames of the map are "
+       "wrong by\n"
+       "together can not be told. Raises InvalidInput on frames that integrate() would refuse, an empty map and "
+       "options out\n"
+       "of range." +
+       option_help(registration_fields()))
+          .c_str());
 }
 
 void bind_depth_camera(py::module_& m) {
@@ -141,6 +228,8 @@ void bind_sdf_results(py::module_& m) {
       .def_readonly("too_noisy", &R::too_noisy, "Standard deviation above a third of the truncation.")
       .def_readonly("without_normal", &R::without_normal, "Too few neighbours on the same surface.")
       .def_readonly("too_slanted", &R::too_slanted, "Incidence above max_incidence.")
+      .def_readonly("outliers", &R::outliers, "Apart from what their neighbours measured by more than the gate.")
+      .def_readonly("contradicted", &R::contradicted, "Voxels at which the outlier gate shut.")
       .def_readonly("invalid", &R::invalid, "NaN, infinite or negative, hence not measured.")
       .def_readonly("new_blocks", &R::new_blocks, "Blocks of 8 x 8 x 8 voxels that the map got.")
       .def_readonly("agreement", &R::agreement,
@@ -201,6 +290,9 @@ void bind_sdf(py::module_& m) {
               }
             }
             return interruptible([&] { return sdf.integrate(image, camera, uncertainty); });
+            const FrameUncertainty uncertainty = uncertainty_argument(image, pose_covariance, sigma);
+            py::gil_scoped_release release;
+            return sdf.integrate(image, camera, uncertainty);
           },
           "image"_a, "camera"_a, py::kw_only(), "pose_covariance"_a = py::none(), "sigma"_a = py::none(),
           "Adds a frame. `pose_covariance` (6, 6): of the error of T_world_camera, displacement [m] first, then\n"
@@ -310,6 +402,7 @@ void bind_sdf(py::module_& m) {
             << s.options().voxel << " m)";
         return out.str();
       });
+  bind_registration(m);
   m.def("_sdf_option_table", [] { return option_table(sdf_fields()); });
 }
 

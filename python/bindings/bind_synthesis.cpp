@@ -4,6 +4,7 @@
 #include "given.hpp"
 #include "mmgrasp/grasp/eigengrasp.hpp"
 #include "mmgrasp/grasp/line_grasp.hpp"
+#include "mmgrasp/grasp/next_view.hpp"
 #include "mmgrasp/grasp/surface_draws.hpp"
 #include "mmgrasp/grasp/synthesize_grasps.hpp"
 
@@ -182,6 +183,89 @@ std::optional<Eigen::AlignedBox3d> box_argument(const OptionalArray& value) {
   return Eigen::AlignedBox3d(rows.row(0).transpose(), rows.row(1).transpose());
 }
 
+/// Reach of an arm from the middle of its limits unless told; none without an arm.
+ArmReach reach_argument(const JointGroup* arm, const World* world, const OptionalArray& arm_seed) {
+  require(arm != nullptr || world == nullptr, "world", "given", "goes with an arm");
+  if (arm == nullptr) return {};
+  const Eigen::VectorXd seed = arm_seed.is_none() ? Eigen::VectorXd((arm->sample_lower() + arm->sample_upper()) / 2)
+                                                  : vector_argument(arm_seed, "arm_seed", arm->size());
+  return make_arm_reach(world ? with_sampled_pairs(*arm) : *arm, seed, world);
+}
+
+const std::vector<OptionField<NextViewOptions>>& next_view_fields() {
+  using O = NextViewOptions;
+  using S = SynthesisOptions;
+  const auto search = [](const char* name, auto S::*member, const char* help) {
+    return option<O>(name, &O::synthesis, member, help);
+  };
+  static const std::vector<OptionField<O>> fields{
+      option<O>("candidates", &O::candidates, "camera poses on the sphere around the object"),
+      option<O>("distance", &O::distance, "of the camera from the middle of the object [m]"),
+      option<O>("min_elevation", &O::min_elevation, "lowest camera above the horizontal through the middle [rad]"),
+      option<O>("max_elevation", &O::max_elevation, "highest [rad]"),
+      option<O>("draws", &O::draws, "frames imagined of each pose, each with noise of its own"),
+      option<O>("max_width", &O::max_width, "imagined frames have no more columns [pixels]"),
+      option<O>("threads", &O::threads, "0: all"),
+      option<O>("seed", &O::seed, "same seed, same view"),
+      search("samples", &S::samples, "grasps evaluated in each imagined map"),
+      search("max_tilt", &S::max_tilt, "of the approach against straight down [rad]"),
+      search("sigmas", &S::sigmas, "standard deviations of the surface kept free around the hand"),
+      search("margin", &S::margin, "kept free beside them, and above the table [m]")};
+  return fields;
+}
+
+void bind_next_view(py::module_& m) {
+  using C = ViewCandidate;
+  py::class_<C>(m, "ViewCandidate", "A camera pose and what is expected of it.")
+      .def_property_readonly(
+          "T_world_camera", [](const C& c) { return Eigen::Matrix4d(c.T_world_camera.matrix()); }, "(4, 4)")
+      .def_readonly("probability", &C::probability, "Best grasp's, once the frame is in the map.")
+      .def_readonly("certain", &C::certain, "How much surface would be certain, in shares of the candidate with most.")
+      .def_readonly("unseen", &C::unseen, "Share of the object's pixels that would show what the map does not know.")
+      .def_readonly("q", &C::q, "The arm's configuration; empty without an arm.")
+      .def("__repr__", [](const C& c) { return "ViewCandidate(probability " + std::to_string(c.probability) + ")"; });
+  using V = NextView;
+  py::class_<V>(m, "NextView", "Where to look next.")
+      .def_readonly("outcome", &V::outcome, "solved, not_found (the arm reaches no pose) or stopped.")
+      .def_readonly("probability_now", &V::probability_now, "Best grasp's in the map as it is; 0: there is none.")
+      .def_readonly("candidates", &V::candidates, "Those within reach, the best first.")
+      .def_readonly("arm", &V::arm, "Why the arm did not reach others.")
+      .def("__repr__",
+           [](const V& v) { return "NextView(" + std::to_string(v.candidates.size()) + " poses within reach)"; });
+  m.def(
+      "next_view",
+      [](const ProbabilisticSdf& map, const Hand& hand, const DepthCamera& camera, const std::optional<double>& table,
+         const OptionalArray& object, const Robot* robot, const JointGroup* arm, const World* world,
+         const OptionalArray& arm_seed, const OptionalArray& pose_covariance, const Progress& progress,
+         const py::kwargs& options) {
+        NextViewOptions chosen = read_options(next_view_fields(), options, "next_view");
+        chosen.synthesis.table = table;
+        chosen.synthesis.object = box_argument(object);
+        if (!pose_covariance.is_none()) {
+          const Eigen::MatrixXd C = matrix_argument(pose_covariance, "pose_covariance", 6);
+          require(C.rows() == 6, "pose_covariance", static_cast<double>(C.rows()), "must have 6 rows");
+          chosen.uncertainty.pose_covariance = C;
+        }
+        const ArmReach reach = reach_argument(arm, world, arm_seed);
+        return LongCall(progress).run([&](const Monitor& monitor) {
+          const auto model = robot ? make_hand_model(hand, *robot) : make_hand_model(hand);
+          return next_view(map, *model, camera, chosen, monitor, reach);
+        });
+      },
+      "map"_a, "hand"_a, "camera"_a, py::kw_only(), "table"_a = py::none(), "object"_a = py::none(),
+      "robot"_a = py::none(), "arm"_a = py::none(), "world"_a = py::none(), "arm_seed"_a = py::none(),
+      "pose_covariance"_a = py::none(), "progress"_a = py::none(),
+      ("The reachable camera pose after which the best grasp of a part is expected to be most probable.\n\nPoses lie "
+       "on "
+       "a sphere around the object. From each a frame is imagined (the map's surface, and behind it the hull of\nwhat "
+       "was seen), integrated into a copy of the map, and grasps are searched for there. `camera` is the one that "
+       "will\n"
+       "look, `pose_covariance` (6, 6) that of its pose; `arm` is a group whose tip is the camera, other arguments are "
+       "as in\nsynthesize_grasps(). Raises InvalidInput for a map without a surface." +
+       option_help(next_view_fields()))
+          .c_str());
+}
+
 }  // namespace
 
 void bind_synthesis(py::module_& m) {
@@ -212,6 +296,7 @@ void bind_synthesis(py::module_& m) {
   bind_success(m);
   bind_line_grasp(m);
   bind_result(m);
+  bind_next_view(m);
   m.def(
       "synthesize_grasps",
       [](const ProbabilisticSdf& map, const Hand& hand, const std::optional<double>& table, const OptionalArray& object,
@@ -229,6 +314,7 @@ void bind_synthesis(py::module_& m) {
                                            : configuration_argument(arm_seed, "arm_seed", arm->size());
           reach = make_arm_reach(world ? with_sampled_pairs(*arm) : *arm, seed, world);
         }
+        const ArmReach reach = reach_argument(arm, world, arm_seed);
         return LongCall(progress).run([&](const Monitor& monitor) {
           const auto model = robot ? make_hand_model(hand, *robot) : make_hand_model(hand);
           GraspSynthesis found = synthesize_grasps(map, *model, call.search, monitor, reach);

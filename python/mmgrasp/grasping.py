@@ -35,6 +35,9 @@ from ._core import (
     DrawnSuccess as DrawnSuccess,
     ContactPatch as ContactPatch,
     synthesize_grasps as synthesize_grasps,
+    next_view as next_view,
+    NextView as NextView,
+    ViewCandidate as ViewCandidate,
     LineGrasp as LineGrasp,
 )
 

@@ -17,6 +17,8 @@ from ._core import (
     ProbabilisticSdf as ProbabilisticSdf,
     IntegrationReport as IntegrationReport,
     SdfHits as SdfHits,
+    register_frame as register_frame,
+    FrameRegistration as FrameRegistration,
     OccupancyMap as OccupancyMap,
     OccupancyReport as OccupancyReport,
 )

@@ -67,6 +67,29 @@ def test_the_table_one_object_and_the_file(scanned: Path, tmp_path: Path, capsys
     assert again == json.loads(out.read_text())
 
 
+def test_patches_lie_on_the_faces_and_are_drawn(
+    scanned: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    png = tmp_path / "grasps.png"
+    rows = grasps(scanned, capsys, "--png", str(png))["objects"]
+    assert png.read_bytes().startswith(b"\x89PNG") and png.stat().st_size > 20_000
+    for row in rows:
+        for grasp in row["grasps"]:
+            assert grasp["approach"][2] < 0 and np.linalg.norm(grasp["approach"]) == pytest.approx(1)
+            assert len(grasp["patches"]) == 2
+            T = mg.pose(grasp["T_world_hand"]["xyz"], quat_xyzw=grasp["T_world_hand"]["quat_xyzw"])
+            middle, yaw, sides = min(SIDES.values(), key=lambda side: float(np.linalg.norm(side[0] - T[:2, 3])))
+            for patch in grasp["patches"]:
+                # On one of the box's four upright faces, in its own frame, and facing away from its middle.
+                turn = np.array([[np.cos(yaw), np.sin(yaw)], [-np.sin(yaw), np.cos(yaw)]])
+                point, normal = turn @ (np.array(patch["point"][:2]) - middle), turn @ np.array(patch["normal"][:2])
+                axis = int(np.argmax(np.abs(normal)))
+                assert abs(abs(point[axis]) - sides[axis] / 2) < 0.004 and point[axis] * normal[axis] > 0
+                assert 0 < patch["sigma"] < 0.005
+    assert main(["grasp", str(scanned), "--gripper", GRIPPER, "--png", str(tmp_path)]) == 2
+    assert str(tmp_path) in capsys.readouterr().err.replace("\n", "")
+
+
 def test_bad_input_is_refused_by_name(scanned: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     def refused(*arguments: str) -> str:
         capsys.readouterr()

@@ -124,3 +124,34 @@ def test_rays_meet_a_table_at_any_height_of_the_grid() -> None:
 def test_an_empty_map_has_arrays_of_the_usual_columns() -> None:
     mesh, sigmas = mg.ProbabilisticSdf().mesh()
     assert (mesh.vertices.shape, mesh.triangles.shape, sigmas.shape) == ((0, 3), (0, 3), (0,))
+
+
+def test_a_frame_is_moved_onto_the_map() -> None:
+    sdf = mg.ProbabilisticSdf(outlier_gate=5.0, persistence=20)
+    eyes = [[0.0, 0.0, 0.35], [0.04, 0.02, 0.35], [-0.03, 0.03, 0.33]]
+    for eye in eyes:
+        report = sdf.integrate(frame(eye), CAMERA)
+        assert report.outliers < 30 and report.contradicted == 0
+    seen = frame([0.02, -0.02, 0.34])
+    truth = np.array(seen.T_world_camera)
+    off = truth @ mg.pose([0.002, -0.003, 0.006], rpy=[0.01, -0.008, 0.0])
+    image = mg.mapping.DepthImage(seen.depth, INTRINSICS, off)
+    covariance = np.diag([0.01**2] * 3 + [0.02**2] * 3)
+    found = mg.mapping.register_frame(sdf, image, CAMERA, pose_covariance=covariance)
+    assert found.registered and found.reason == "" and found.matched > 1000 and found.rms < found.rms_before
+    # From straight above only tops are seen: they fix height and tilt, and the rest stays as given.
+    assert found.observed == 3 and abs(found.T_world_camera[2, 3] - truth[2, 3]) < 0.0005
+    assert found.T_world_camera[2, 2] == pytest.approx(-1, abs=1e-6)
+    assert np.abs(found.T_world_camera[:2, 3] - off[:2, 3]).max() < 0.0005
+    assert (np.linalg.eigvalsh(covariance - found.covariance) > -1e-12).all()
+    sdf.integrate(
+        mg.mapping.DepthImage(seen.depth, INTRINSICS, found.T_world_camera), CAMERA, pose_covariance=found.covariance
+    )
+    away = mg.mapping.DepthImage(seen.depth, INTRINSICS, mg.pose([3, 0, 0]) @ off)
+    refused = mg.mapping.register_frame(sdf, away, CAMERA, pose_covariance=covariance)
+    assert not refused.registered and "meet the map's surface" in refused.reason
+    assert np.array_equal(refused.T_world_camera, away.T_world_camera)
+    with pytest.raises(mg.InvalidInput, match="pose_covariance"):
+        mg.mapping.register_frame(sdf, image, CAMERA, pose_covariance=np.zeros((6, 6)))
+    with pytest.raises(mg.InvalidInput, match="min_overlap"):
+        mg.mapping.register_frame(sdf, image, CAMERA, pose_covariance=covariance, min_overlap=0.0)

@@ -154,3 +154,20 @@ def test_a_ycb_object_is_held_where_its_mesh_is() -> None:
             T = np.linalg.inv(grasp.T_object_hand @ box.pose)
             inside = np.abs((vertices + offset) @ T[:3, :3].T + T[:3, 3]) < np.asarray(box.shape.size) / 2
             assert not np.any(np.all(inside, axis=1))
+
+
+def test_the_next_view_shows_the_other_side() -> None:
+    scene = [TABLE, mg.LinkShape(mg.Box([0.07, 0.04, 0.06]), mg.pose([0, 0, 0.03]))]
+    sdf = mg.ProbabilisticSdf(threads=1)
+    sdf.integrate(
+        mg.mapping.render_depth(scene, INTRINSICS, looking_at(np.array([0, -0.33, 0.14]), np.array([0, 0, 0.03]))),
+        CAMERA,
+    )
+    found = mg.grasping.next_view(sdf, HAND, CAMERA, table=0.0, candidates=8, draws=1, distance=0.33)
+    assert found.outcome == mg.Outcome.solved and len(found.candidates) == 8
+    best = found.candidates[0]
+    assert best.T_world_camera[1, 3] > 0.05 and best.unseen > 0.1 and best.certain > 0.5
+    with pytest.raises(mg.InvalidInput, match="candidates"):
+        mg.grasping.next_view(sdf, HAND, CAMERA, candidates=0)
+    with pytest.raises(mg.InvalidInput, match="world"):
+        mg.grasping.next_view(sdf, HAND, CAMERA, world=mg.World())

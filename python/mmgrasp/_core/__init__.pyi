@@ -11,6 +11,7 @@ import os
 import typing
 from . import verify
 __all__: list[str] = ['AssemblyGrasp', 'AssemblyOperation', 'BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'BeamExtreme', 'BeamFrame', 'BeamMaterial', 'BeamMember', 'BeamSection', 'BeamState', 'BeamSupport', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactArea', 'ContactPairProvenance', 'ContactPatch', 'CuboidFit', 'Cylinder', 'DepthCamera', 'DepthImage', 'DepthNoise', 'DerivativeFreeResult', 'DistanceField', 'DistanceResult', 'DrawnSuccess', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'Facet', 'FeasibleGrasp', 'FingerGrip', 'FingerLengthRange', 'FittedCuboid', 'FittedPrimitive', 'Grasp', 'GraspHolding', 'GraspOptimum', 'GraspRating', 'GraspReport', 'GraspSuccess', 'GraspSynthesis', 'GraspWidth', 'Graspability', 'GridDistanceField', 'Gripper', 'GripperActuator', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'IntegrationReport', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LineGrasp', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'ManipulationStats', 'Mesh', 'MeshDistanceField', 'MeshSegment', 'MeshSegmentation', 'MinimalGrippersResult', 'MotionResult', 'MotionStats', 'NlpResult', 'NodeLoad', 'NonlinearProblem', 'ObjectPathEvaluator', 'ObjectPathProblem', 'ObjectPathResult', 'ObjectRegions', 'ObjectSegmentation', 'Obstruction', 'OccupancyMap', 'OccupancyReport', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'PairwiseWeights', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedMesh', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'ProbabilisticSdf', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotMotion', 'RobotSource', 'ScrewThread', 'SdfHits', 'SearchTree', 'SegmentRequirement', 'SegmentedObject', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'SupportedFrame', 'SupportingPlane', 'ToolRegion', 'TourResult', 'Tray', 'Voxels', 'WholeBodyProgram', 'WholeBodyTrajectory', 'World', 'beam_frame', 'cache_folder', 'camera_view_objective', 'centric_grasps', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'copper', 'cover_from_intersections', 'default_grasp_search', 'derivative_free_solver_names', 'drive_arc', 'drive_by_program', 'eigengrasp_hand', 'evaluate_graspability', 'find_package', 'finger_length_range', 'fit_cuboids', 'fit_primitives', 'flat_contact', 'follow_object_path', 'grasp_holding', 'grasp_search_names', 'graspability_map', 'hand_masks', 'inscribed_circle', 'jaw_grasps', 'joint_limit_objective', 'joint_velocity', 'line_contact', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimal_grippers', 'minimize_derivative_free', 'nlp_solver_names', 'optimised_order', 'optimize_grasp', 'paired_order', 'pairwise_weights', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stop_picks', 'plan_stops_exact', 'plan_straight_line', 'planar_facets', 'planner_names', 'platform_velocity', 'population_search_names', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'preferred_grippers', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'rectangular_section', 'render_depth', 'resting_poses', 'robust_intersections', 'round_section', 'route_lengths', 'run_policy', 'sample_grasps', 'segment_depth_image', 'segment_mesh', 'segment_objects', 'self_distance_objective', 'shape_diameters', 'share_headings', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'soft_finger_torque', 'solve_nonlinear', 'solve_set_cover', 'synthesize_grasps', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
+__all__: list[str] = ['AssemblyGrasp', 'AssemblyOperation', 'BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'BeamExtreme', 'BeamFrame', 'BeamMaterial', 'BeamMember', 'BeamSection', 'BeamState', 'BeamSupport', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactArea', 'ContactPairProvenance', 'ContactPatch', 'CuboidFit', 'Cylinder', 'DepthCamera', 'DepthImage', 'DepthNoise', 'DerivativeFreeResult', 'DistanceField', 'DistanceResult', 'DrawnSuccess', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'Facet', 'FeasibleGrasp', 'FingerGrip', 'FingerLengthRange', 'FittedCuboid', 'FittedPrimitive', 'FrameRegistration', 'Grasp', 'GraspHolding', 'GraspOptimum', 'GraspRating', 'GraspReport', 'GraspSuccess', 'GraspSynthesis', 'GraspWidth', 'Graspability', 'GridDistanceField', 'Gripper', 'GripperActuator', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'IntegrationReport', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LineGrasp', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'ManipulationStats', 'Mesh', 'MeshDistanceField', 'MeshSegment', 'MeshSegmentation', 'MinimalGrippersResult', 'MotionResult', 'MotionStats', 'NextView', 'NodeLoad', 'ObjectPathEvaluator', 'ObjectPathProblem', 'ObjectPathResult', 'ObjectRegions', 'ObjectSegmentation', 'Obstruction', 'OccupancyMap', 'OccupancyReport', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'PairwiseWeights', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedMesh', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'ProbabilisticSdf', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotMotion', 'RobotSource', 'ScrewThread', 'SdfHits', 'SearchTree', 'SegmentRequirement', 'SegmentedObject', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'SupportedFrame', 'SupportingPlane', 'ToolRegion', 'TourResult', 'Tray', 'ViewCandidate', 'Voxels', 'WholeBodyTrajectory', 'World', 'beam_frame', 'cache_folder', 'camera_view_objective', 'centric_grasps', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'copper', 'cover_from_intersections', 'default_grasp_search', 'derivative_free_solver_names', 'drive_arc', 'eigengrasp_hand', 'evaluate_graspability', 'find_package', 'finger_length_range', 'fit_cuboids', 'fit_primitives', 'flat_contact', 'follow_object_path', 'grasp_holding', 'grasp_search_names', 'graspability_map', 'hand_masks', 'inscribed_circle', 'jaw_grasps', 'joint_limit_objective', 'joint_velocity', 'line_contact', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimal_grippers', 'minimize_derivative_free', 'next_view', 'nlp_solver_names', 'optimised_order', 'optimize_grasp', 'paired_order', 'pairwise_weights', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stop_picks', 'plan_stops_exact', 'plan_straight_line', 'planar_facets', 'planner_names', 'platform_velocity', 'population_search_names', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'preferred_grippers', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'rectangular_section', 'register_frame', 'render_depth', 'resting_poses', 'robust_intersections', 'round_section', 'route_lengths', 'run_policy', 'sample_grasps', 'segment_depth_image', 'segment_mesh', 'segment_objects', 'self_distance_objective', 'shape_diameters', 'share_headings', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'soft_finger_torque', 'solve_set_cover', 'synthesize_grasps', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
 class Error(Exception):
     """
     Base of all errors of mmgrasp.
@@ -4495,6 +4496,11 @@ class IntegrationReport:
         Share of pixels that confirm an earlier frame where both see the same place; NaN when they have too little in common.
         """
     @property
+    def contradicted(self) -> int:
+        """
+        Voxels at which the outlier gate shut.
+        """
+    @property
     def invalid(self) -> int:
         """
         NaN, infinite or negative, hence not measured.
@@ -4513,6 +4519,11 @@ class IntegrationReport:
     def out_of_range(self) -> int:
         """
         Nearer or farther than the camera sees.
+        """
+    @property
+    def outliers(self) -> int:
+        """
+        Apart from what their neighbours measured by more than the gate.
         """
     @property
     def too_noisy(self) -> int:
@@ -4581,7 +4592,7 @@ class ProbabilisticSdf:
         """
         Reads what save() wrote. Raises IoError when it is no map, of another version, truncated or damaged.
         """
-    def __init__(self, *, voxel: float = 0.002, truncation: float = 0.01, distance: typing.Literal['to_plane', 'along_ray'] = 'to_plane', max_incidence: float = 1.05, max_memory: float = 2000000000.0, threads: int = 0) -> None:
+    def __init__(self, *, voxel: float = 0.002, truncation: float = 0.01, distance: typing.Literal['to_plane', 'along_ray'] = 'to_plane', max_incidence: float = 1.05, outlier_gate: float = 0.0, persistence: int = 254, max_memory: float = 2000000000.0, threads: int = 0) -> None:
         """
         An empty map.
         
@@ -4590,6 +4601,8 @@ class ProbabilisticSdf:
             truncation: float = 0.01  # voxels farther from a depth are not updated by it [m]; at least 3 voxels
             distance: typing.Literal['to_plane', 'along_ray'] = 'to_plane'  # to the plane through the measured point, or along the ray as in P3 (4.12)
             max_incidence: float = 1.05  # what is seen more slanted is not used [rad]
+            outlier_gate: float = 0.0  # depths farther than this many standard deviations from what their neighbours, or three earlier frames, say are left out; 0: none are
+            persistence: int = 254  # most frames by which a surface can be ahead of those that looked through it, or behind
             max_memory: float = 2000000000.0  # a frame that would need more is refused [bytes]
             threads: int = 0  # 0: all
         """
@@ -4657,6 +4670,67 @@ class ProbabilisticSdf:
     def voxel(self) -> float:
         """
         Distance of neighbouring voxels [m].
+        """
+class FrameRegistration:
+    """
+    Where a frame's camera stood, by what a map holds.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def T_world_camera(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (4, 4)
+        """
+    @property
+    def compared(self) -> int:
+        """
+        Pixels that were looked for in the map.
+        """
+    @property
+    def correction(self) -> float:
+        """
+        From the given pose, in its standard deviations.
+        """
+    @property
+    def covariance(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (6, 6) of the pose's error, as `pose_covariance` of ProbabilisticSdf.integrate().
+        """
+    @property
+    def iterations(self) -> int:
+        """
+        Steps of Gauss-Newton.
+        """
+    @property
+    def matched(self) -> int:
+        """
+        Compared pixels that met its surface and agree with it in the end.
+        """
+    @property
+    def observed(self) -> int:
+        """
+        Directions of the six that the surface fixes.
+        """
+    @property
+    def reason(self) -> str:
+        """
+        Why it was refused, or empty.
+        """
+    @property
+    def registered(self) -> bool:
+        """
+        Else the pose is the given one, and `reason` says why.
+        """
+    @property
+    def rms(self) -> float:
+        """
+        The same at the registered one [m].
+        """
+    @property
+    def rms_before(self) -> float:
+        """
+        Distance of the matched pixels from the map at the given pose [m].
         """
 class OccupancyReport:
     """
@@ -5282,6 +5356,63 @@ class GraspSynthesis:
     def ratings(self) -> list[GraspRating]:
         """
         Ratings of the grasps, in the same order.
+        """
+class ViewCandidate:
+    """
+    A camera pose and what is expected of it.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def T_world_camera(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (4, 4)
+        """
+    @property
+    def certain(self) -> float:
+        """
+        How much surface would be certain, in shares of the candidate with most.
+        """
+    @property
+    def probability(self) -> float:
+        """
+        Best grasp's, once the frame is in the map.
+        """
+    @property
+    def q(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        The arm's configuration; empty without an arm.
+        """
+    @property
+    def unseen(self) -> float:
+        """
+        Share of the object's pixels that would show what the map does not know.
+        """
+class NextView:
+    """
+    Where to look next.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def arm(self) -> Rejections:
+        """
+        Why the arm did not reach others.
+        """
+    @property
+    def candidates(self) -> list[ViewCandidate]:
+        """
+        Those within reach, the best first.
+        """
+    @property
+    def outcome(self) -> Outcome:
+        """
+        solved, not_found (the arm reaches no pose) or stopped.
+        """
+    @property
+    def probability_now(self) -> float:
+        """
+        Best grasp's in the map as it is; 0: there is none.
         """
 class Pipe:
     """
@@ -6744,6 +6875,29 @@ def minimize_derivative_free(objective: collections.abc.Callable[[numpy.typing.N
         time_limit: float = 30.0  # wall-clock cap [s]
         seed: int = 1  # same seed, same answer
     """
+def next_view(map: ProbabilisticSdf, hand: Hand, camera: DepthCamera, *, table: float | None = None, object: numpy.typing.ArrayLike | None = None, robot: Robot | None = None, arm: JointGroup | None = None, world: World | None = None, arm_seed: numpy.typing.ArrayLike | None = None, pose_covariance: numpy.typing.ArrayLike | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, candidates: int = 24, distance: float = 0.35, min_elevation: float = 0.35, max_elevation: float = 1.35, draws: int = 2, max_width: int = 160, threads: int = 0, seed: int = 1, samples: int = 200, max_tilt: float = 1.05, sigmas: float = 2.0, margin: float = 0.002) -> NextView:
+    """
+    The reachable camera pose after which the best grasp of a part is expected to be most probable.
+    
+    Poses lie on a sphere around the object. From each a frame is imagined (the map's surface, and behind it the hull of
+    what was seen), integrated into a copy of the map, and grasps are searched for there. `camera` is the one that will
+    look, `pose_covariance` (6, 6) that of its pose; `arm` is a group whose tip is the camera, other arguments are as in
+    synthesize_grasps(). Raises InvalidInput for a map without a surface.
+    
+    Keyword options:
+        candidates: int = 24  # camera poses on the sphere around the object
+        distance: float = 0.35  # of the camera from the middle of the object [m]
+        min_elevation: float = 0.35  # lowest camera above the horizontal through the middle [rad]
+        max_elevation: float = 1.35  # highest [rad]
+        draws: int = 2  # frames imagined of each pose, each with noise of its own
+        max_width: int = 160  # imagined frames have no more columns [pixels]
+        threads: int = 0  # 0: all
+        seed: int = 1  # same seed, same view
+        samples: int = 200  # grasps evaluated in each imagined map
+        max_tilt: float = 1.05  # of the approach against straight down [rad]
+        sigmas: float = 2.0  # standard deviations of the surface kept free around the hand
+        margin: float = 0.002  # kept free beside them, and above the table [m]
+    """
 def nlp_solver_names() -> list[str]:
     """
     Names that plan_drive_by's `solver` takes.
@@ -7066,6 +7220,24 @@ def read_pcd(path: str | os.PathLike[str]) -> PointCloud:
 def rectangular_section(y_length: float, z_length: float, wall: float = 0.0) -> BeamSection:
     """
     Rectangle by its outer lengths and its wall [m]; without a wall a bar. Torsion of tubes by Bredt (thin walls).
+    """
+def register_frame(sdf: ProbabilisticSdf, image: DepthImage, camera: DepthCamera, *, pose_covariance: numpy.typing.ArrayLike, sigma: numpy.typing.ArrayLike | None = None, max_points: int = 4000, max_iterations: int = 30, max_distance: float = 0.05, min_overlap: float = 0.3, max_correction: float = 4.0, min_observability: float = 0.0015, threads: int = 0) -> FrameRegistration:
+    """
+    Moves a frame's pose so that its depths meet the map: point to plane on the map's field, Gauss-Newton, weighted by
+    the variances of both. The given pose counts with `pose_covariance` (6, 6), which must be positive definite: it says
+    how far the pose may be moved. What the surface does not fix (a plane slid in itself) is not moved. The map stays as
+    it is; integrate the frame with the pose and the covariance that come back. What all frames of the map are wrong by
+    together can not be told. Raises InvalidInput on frames that integrate() would refuse, an empty map and options out
+    of range.
+    
+    Keyword options:
+        max_points: int = 4000  # pixels that are compared, spread evenly; at least 100
+        max_iterations: int = 30  # steps of Gauss-Newton
+        max_distance: float = 0.05  # pixels farther from the map's surface are not compared [m]
+        min_overlap: float = 0.3  # share of the compared pixels that must meet the map
+        max_correction: float = 4.0  # farther from the given pose, in its standard deviations, is refused
+        min_observability: float = 0.0015  # directions along which the surface moves by less than this share of the motion stay as given
+        threads: int = 0  # 0: all
     """
 def render_depth(scene: collections.abc.Sequence[LinkShape], camera: PinholeCamera, T_world_camera: numpy.typing.ArrayLike, *, noise: float = 0.0, missing: float = 0.0, seed: int = 1, threads: int = 0) -> DepthImage:
     """

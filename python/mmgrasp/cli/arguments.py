@@ -206,6 +206,9 @@ def _add_grasp(commands: Commands) -> None:
     parser.add_argument("--object", type=_name, metavar="NAME", help="only this object of objects.json")
     parser.add_argument("-o", "--out", type=_path, metavar="FILE", help="also write all grasps as JSON")
     parser.add_argument(
+        "--png", type=_path, metavar="FILE", help="also draw the best grasp of each object with its contact patches"
+    )
+    parser.add_argument(
         "--samples", type=_count(1, 100_000, "samples"), default=200, metavar="N", help="grasps tried for an object"
     )
     parser.add_argument(

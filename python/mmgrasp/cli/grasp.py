@@ -30,8 +30,9 @@ _SHARES = ("angle", "placement", "centring", "certainty")
 
 def run_grasp(arguments: argparse.Namespace, console: Console) -> int:
     """`mmgrasp grasp`: ranked grasps of the objects in a map; the exit code."""
-    if arguments.out is not None:
-        check_file(arguments.out)
+    for path in (arguments.out, arguments.png):
+        if path is not None:
+            check_file(path)
     hand = read_gripper(arguments.gripper)
     objects, plane = _read_objects(arguments.map)
     chosen = _chosen(objects, arguments.object, arguments.map)
@@ -45,10 +46,16 @@ def run_grasp(arguments: argparse.Namespace, console: Console) -> int:
     content = {"format": FORMAT, "version": VERSION, "gripper": arguments.gripper, "objects": rows}
     if arguments.out is not None:
         write_file(arguments.out, json.dumps(content, indent=1, allow_nan=False) + "\n")
+    if arguments.png is not None:
+        from ..viz.grasp_pictures import write_grasp_picture
+
+        points, _, sigmas = sdf.points()
+        panels = [{**row, "bounds": thing["bounds"]} for row, thing in zip(rows, chosen, strict=True)]
+        write_grasp_picture(panels, points, sigmas, arguments.png)
     if arguments.json:
         print(json.dumps(content, indent=1, allow_nan=False))
     else:
-        _print(rows, arguments.out, console)
+        _print(rows, {"grasps": arguments.out, "picture": arguments.png}, console)
     return DONE if any(row["grasps"] for row in rows) else NOT_FOUND
 
 
@@ -123,12 +130,17 @@ def _grasps_of(
                 "pretouch_opening": rating.pretouch_opening,
                 "probability": success["probability"],
                 "criteria": {name: success[name] for name in _SHARES},
+                "approach": (grasp.T_object_hand[:3, :3] @ np.array(hand.approach)).tolist(),
+                "patches": [
+                    {"point": list(patch.point), "normal": list(patch.normal), "sigma": patch.sigma}
+                    for patch in rating.patches
+                ],
             }
         )
     return {"name": thing["name"], "summary": found.summary(), "counts": dict(found.counts), "grasps": grasps}
 
 
-def _print(rows: list[dict[str, Any]], out: Path | None, console: Console) -> None:
+def _print(rows: list[dict[str, Any]], written: dict[str, Path | None], console: Console) -> None:
     table = Table(title="the best grasp of each object; its probability weighs the criteria")
     for column in ("object", "grasps", "prob.", "angle", "place", "centre", "sure", "mm"):
         table.add_column(column, justify="left" if column == "object" else "right", no_wrap=True)
@@ -143,5 +155,6 @@ def _print(rows: list[dict[str, Any]], out: Path | None, console: Console) -> No
     console.print(table)
     for row in rows:
         console.print(printable(f"{row['name']}: {row['summary']}"), markup=False, soft_wrap=True)
-    if out is not None:
-        console.print(f"grasps: {printable(str(out))}", markup=False, soft_wrap=True)
+    for what, path in written.items():
+        if path is not None:
+            console.print(f"{what}: {printable(str(path))}", markup=False, soft_wrap=True)

@@ -34,6 +34,7 @@ from . import (
     solver_regions,
     three_ways,
     tracking,
+    uncertain_surfaces,
 )
 from .entry import Context, Entry, Result, Sweep, sweep_here
 
@@ -54,6 +55,7 @@ TOPICS = (
     capability,
     shelf,
     grasp_success,
+    uncertain_surfaces,
     grasping_trials,
     drive_by,
     tracking,
@@ -72,6 +74,8 @@ ALSO = {
     "p2-figure-4.5": "p2-table-4.2",
     "p2-figure-5.6": "p2-figure-5.5",
     "p3-figure-3.32": "p3-figure-3.31",
+    "p3-figure-4.14": "p3-figure-4.15",
+    "p3-figure-4.17": "p3-figure-4.18",
     "p3-figure-4.20": "p3-figure-4.21",
 }
 

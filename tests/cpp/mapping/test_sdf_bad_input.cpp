@@ -265,7 +265,7 @@ TEST_F(BadFrame, FilesThatAreNoMap) {
   expect_contains(refused(""), "empty");
   std::string other = bytes;
   other[26] = 9;
-  expect_contains(refused(other), "has version 9 of the format, this program reads version 1");
+  expect_contains(refused(other), "has version 9 of the format, this program reads version 2");
   Rng rng(4);
   for (int k = 0; k < 40; ++k) {
     std::string damaged = bytes;

@@ -34,8 +34,15 @@ struct MMGRASP_EXPORT SdfOptions {
   double truncation = 0.010;  ///< Voxels farther from a depth than this are not updated by it [m]; >= 3 voxels.
   SdfDistance distance = SdfDistance::to_plane;
   double max_incidence = 1.05;  ///< What is seen more slanted is not used [rad]; in (0, pi/2).
-  double max_memory = 2e9;      ///< A frame that would need more is refused before anything is allocated [bytes]; > 0.
-  int threads = 0;              ///< 0: all. The map does not depend on it.
+  /// Depths farther than this many standard deviations from what their neighbours, or three earlier frames, say are
+  /// left out; >= 3, or 0: none are, as in P3. With a gate the order of frames matters where it shuts.
+  double outlier_gate = 0;
+  /// Most frames by which a surface can be ahead of those that looked through it, or behind: what is taken away is
+  /// gone, and what is put back is there again, after at most twice as many; in [1, 254]. The order of frames matters
+  /// for what moved.
+  int persistence = 254;
+  double max_memory = 2e9;  ///< A frame that would need more is refused before anything is allocated [bytes]; > 0.
+  int threads = 0;          ///< 0: all. The map does not depend on it.
   void check() const;
 };
 
@@ -46,9 +53,11 @@ struct MMGRASP_EXPORT IntegrationReport {
   int out_of_range = 0;    ///< Nearer or farther than the camera sees.
   int too_noisy = 0;       ///< Standard deviation above a third of the truncation: cutting would bias the mean.
   int without_normal = 0;  ///< Too few neighbours on the same surface.
+  int outliers = 0;        ///< Apart from what their neighbours measured by more than the outlier gate.
   int too_slanted = 0;     ///< Incidence above max_incidence.
   int invalid = 0;         ///< NaN, infinite or negative, hence not measured.
   int new_blocks = 0;
+  int contradicted = 0;  ///< Voxels that this frame would have moved by more than the outlier gate, and did not.
   /// Share of this frame's pixels that confirm an earlier frame where both see the same place; NaN when they have too
   /// little in common.
   double agreement = std::numeric_limits<double>::quiet_NaN();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mapping/sdf/speckles.hpp"
 #include "mmgrasp/core/parallel.hpp"
 
 namespace mmgrasp::detail {
@@ -20,7 +21,7 @@ constexpr double kSlopeSigma = 0.07;
 /// away other faces may be nearer, and would be pulled off their place.
 constexpr float kCellReach = 1.75f, kNoiseReach = 2.0f;
 
-enum class Fate : std::uint8_t { missing, used, out_of_range, too_noisy, without_normal, too_slanted };
+enum class Fate : std::uint8_t { missing, used, out_of_range, too_noisy, without_normal, too_slanted, outlier };
 
 struct RowSums {
   float sum, moment, squares;
@@ -60,6 +61,9 @@ class PlaneFitter {
   FramePlanes fit() {
     const std::size_t pixels = image_.depth.size();
     sort_depths();
+    if (options_.outlier_gate > 0) {
+      speckles_ = fill_speckles(q_, width_, height_, [&](std::size_t i, std::size_t j) { return joined(i, j, 1); });
+    }
     broken_.assign(pixels, 0);
     rows_.resize(pixels);
     fits_.resize(pixels);
@@ -289,6 +293,7 @@ class PlaneFitter {
     const float in_front = least_depth_around(u, v) - voxel;
     plane.free_depth = in_front - 4 * truncation;
     if (q_[i] == 0) return Fate::out_of_range;
+    if (is_outlier(i, z)) return Fate::outlier;
     float su, sv;
     if (!slopes(u, v, su, sv)) return Fate::without_normal;
     // The plane m . X = 1: its inverse depth along the ray (x, y, 1) is m . (x, y, 1).
@@ -331,6 +336,18 @@ class PlaneFitter {
     return Fate::used;
   }
 
+  /// Whether the neighbours, which are on one surface, say another depth; less than a voxel is an edge.
+  bool is_outlier(std::size_t i, float z) const {
+    if (!(options_.outlier_gate > 0)) return false;
+    if (speckles_[i]) return true;
+    if (fits_[i].misfit < 0) return false;
+    // The fit holds the pixel itself, with a leverage of 1 / n.
+    const float n = static_cast<float>((2 * radius_ + 1) * (2 * radius_ + 1));
+    const float off = std::abs(q_[i] - fits_[i].q) * z * z * n / (n - 1);
+    const float sigma = axial_sigma(i, z) * std::sqrt(n / (n - 1));
+    return off > static_cast<float>(options_.outlier_gate) * sigma && off > static_cast<float>(options_.voxel);
+  }
+
   /// What the variance is multiplied by where a plane of its own depth is not all there is to a pixel.
   float doubt(std::size_t i, float z, float depth) const {
     // Behind a rim lie faces that this frame does not see, and voxels near them are not as deep as it says. The fourth
@@ -362,6 +379,7 @@ class PlaneFitter {
       report.too_noisy += fate == Fate::too_noisy;
       report.without_normal += fate == Fate::without_normal;
       report.too_slanted += fate == Fate::too_slanted;
+      report.outliers += fate == Fate::outlier;
     }
   }
 
@@ -378,7 +396,7 @@ class PlaneFitter {
   std::vector<float> q_, rim_;
   std::vector<RowSums> rows_;
   std::vector<WindowFit> fits_;
-  std::vector<std::uint8_t> broken_;
+  std::vector<std::uint8_t> broken_, speckles_;
   std::vector<int> integral_;
   std::vector<Fate> fate_;
   FramePlanes out_;

@@ -23,6 +23,7 @@ struct WorkBlock {
   std::unique_ptr<VoxelBlock> fresh;  // where the grid has no voxels of this layer yet
   VoxelBlock* voxels = nullptr;
   bool touched = false;
+  int contradicted = 0;  // voxels at which the gate shut
 };
 
 /// The depths at which a block is surely free, or surely hidden, by tiles.
@@ -178,21 +179,20 @@ class FrameIntegration {
     }
   }
 
-  /// Takes the new blocks into the grid. Returns how many.
-  int commit() {
+  /// Takes the new blocks into the grid and counts them.
+  void commit(IntegrationReport& report) {
     const int layer = grid_.layer_of(camera_);
-    int added = 0;
     for (WorkBlock& work : work_) {
+      report.contradicted += work.contradicted;
       if (work.fresh && work.touched) {
         if (work.block < 0) {
           work.block = grid_.add(work.key);
-          ++added;
+          ++report.new_blocks;
         }
         grid_.layers[layer][work.block] = std::move(work.fresh);
       }
       if (work.touched) grid_.update_correlation(work.block);
     }
-    return added;
   }
 
  private:
@@ -286,6 +286,10 @@ class FrameIntegration {
     out.cx = static_cast<float>(c.cx + 0.5);
     out.cy = static_cast<float>(c.cy + 0.5);
     out.nearest = static_cast<float>(c.nearest);
+    const SdfOptions& options = grid_.options;
+    out.gate_squared = static_cast<float>(options.outlier_gate * options.outlier_gate);
+    out.gate_least = static_cast<float>(0.5 * options.voxel);
+    out.persistence = options.persistence;
     for (int k = 0; k < 3; ++k) {
       const Vector3d step = grid_.options.voxel * image_.T_world_camera.linear().row(k).transpose();
       for (int axis = 0; axis < 3; ++axis) out.step[k][axis] = static_cast<float>(step[axis]);
@@ -305,9 +309,10 @@ class FrameIntegration {
     return out;
   }
 
-  bool update(const KernelFrame& kernel, const BlockKey& key, VoxelBlock& voxels) const {
+  bool update(const KernelFrame& kernel, const BlockKey& key, VoxelBlock& voxels, int* contradicted = nullptr) const {
     KernelBlock block = kernel_block(key, voxels);
     integrate_block(kernel, block);
+    if (contradicted) *contradicted = block.contradicted;
     voxels.looked_through |= block.looked_through;
     if (!block.touched) return false;
     voxels.sum_weight += block.sum_weight;
@@ -336,7 +341,7 @@ class FrameIntegration {
 
   void update_candidate(const KernelFrame& kernel, WorkBlock& work, std::unique_ptr<VoxelBlock>& spare) const {
     if (work.voxels) {
-      work.touched = update(kernel, work.key, *work.voxels);
+      work.touched = update(kernel, work.key, *work.voxels, &work.contradicted);
     } else {
       if (!spare) spare = std::make_unique<VoxelBlock>();
       work.touched = update(kernel, work.key, *spare);
@@ -353,9 +358,11 @@ class FrameIntegration {
     }
   }
 
-  static void count_all_free(VoxelBlock& voxels) {
+  void count_all_free(VoxelBlock& voxels) const {
     for (int i = 0; i < kBlockVoxels; ++i) {
-      const int frames = voxels.free[i] + (voxels.near[i] > 0);
+      if (voxels.near[i] == 0) continue;
+      const int most = voxels.near[i] + grid_.options.persistence,
+                frames = std::max<int>(voxels.free[i], std::min(most, voxels.free[i] + 1));
       voxels.free[i] = static_cast<std::uint8_t>(std::min(255, frames));
     }
     voxels.looked_through = true;
@@ -398,7 +405,7 @@ IntegrationReport integrate_frame(SdfGrid& grid, DepthImage image, const DepthCa
   integration.collect();
   integration.collect_free();
   integration.run();
-  report.new_blocks = integration.commit();
+  integration.commit(report);
   // A key frame serves until the camera sees something else.
   if (grid.frames == 0 || std::isnan(report.agreement)) grid.key_frame = std::move(key_frame);
   ++grid.frames;

@@ -1,5 +1,6 @@
 #include "mapping/sdf/integrate_kernel.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "mmgrasp/core/detail/instruction_set.hpp"
@@ -14,8 +15,36 @@ namespace {
 
 constexpr int kLanes = 8;  // voxels of a row
 
-void count_up(std::uint8_t& frames) {
-  if (frames < 255) ++frames;
+constexpr int kSure = 3;  // frames that make a voxel one that can be contradicted
+
+/// A frame more that saw a voxel near a surface; at the limit one less that looked through it.
+void count_near(std::uint8_t& near, std::uint8_t& free, int persistence) {
+  if (near < persistence) {
+    ++near;
+  } else if (free > 0) {
+    --free;
+  }
+}
+
+void count_free(std::uint8_t near, std::uint8_t& free, int persistence) {
+  if (free < std::min(255, near + persistence)) ++free;
+}
+
+bool contradicts(const KernelFrame& f, float off, float old, float weight) {
+  return off * off * (old * weight) > f.gate_squared * (old + weight) && std::abs(off) > f.gate_least;
+}
+
+/// Keeps a voxel as it is, until more frames contradict than saw it: then the last one counts alone.
+void contradict(KernelBlock& b, int row, int x, float d, float weight, int persistence) {
+  const int i = row * kLanes + x;
+  ++b.contradicted;
+  count_free(b.near[i], b.free[i], persistence);
+  b.looked_through = true;
+  if (b.free[i] <= b.near[i]) return;
+  b.rows[row * 2 * kLanes + x] = d;
+  b.rows[row * 2 * kLanes + kLanes + x] = weight;
+  b.near[i] = 1;
+  b.free[i] = 0;
 }
 
 /// Sums a row's lanes in an order that both versions keep.
@@ -42,7 +71,7 @@ void integrate_portable(const KernelFrame& f, KernelBlock& b) {
       const int i = row * kLanes + x;
       if (Z < pixel.free_depth) {
         if (b.near[i] > 0) {
-          count_up(b.free[i]);
+          count_free(b.near[i], b.free[i], f.persistence);
           b.looked_through = true;
         }
         continue;
@@ -52,9 +81,13 @@ void integrate_portable(const KernelFrame& f, KernelBlock& b) {
       float& mean = b.rows[row * 2 * kLanes + x];
       float& weight = b.rows[row * 2 * kLanes + kLanes + x];
       const float sum = weight + pixel.weight;
+      if (f.gate_squared > 0 && b.near[i] >= kSure && contradicts(f, d - mean, weight, pixel.weight)) {
+        contradict(b, row, x, d, pixel.weight, f.persistence);
+        continue;
+      }
       mean = mean + (d - mean) * (pixel.weight / sum);
       weight = sum;
-      count_up(b.near[i]);
+      count_near(b.near[i], b.free[i], f.persistence);
       sums[0][x] += pixel.weight;
       sums[1][x] += f.shares ? f.shares[at].white : pixel.weight;
       sums[2][x] += f.shares ? f.shares[at].systematic : 0;
@@ -80,16 +113,55 @@ struct ByteTable {
 };
 constexpr ByteTable kBytes;
 
-/// Adds a frame where the mask's bit is set and, if given, `where` is not zero; whether there was such a place.
-__attribute__((target("avx2"))) bool count_up(std::uint8_t* frames, int mask, const std::uint8_t* where = nullptr) {
-  const __m128i old = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(frames));
-  __m128i one = _mm_cvtsi64_si128(static_cast<long long>(kBytes.bytes[mask]));
-  if (where) {
-    const __m128i zero = _mm_cmpeq_epi8(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(where)), _mm_setzero_si128());
-    one = _mm_andnot_si128(zero, one);
+/// count_near() in the row's lanes of the mask.
+__attribute__((target("avx2"))) void count_near(std::uint8_t* near, std::uint8_t* free, int mask, int persistence) {
+  const __m128i old = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(near));
+  const __m128i one = _mm_cvtsi64_si128(static_cast<long long>(kBytes.bytes[mask]));
+  const __m128i limit = _mm_set1_epi8(static_cast<char>(persistence));
+  const __m128i full = _mm_cmpeq_epi8(_mm_max_epu8(old, limit), old);
+  _mm_storel_epi64(reinterpret_cast<__m128i*>(near), _mm_adds_epu8(old, _mm_andnot_si128(full, one)));
+  const __m128i less = _mm_and_si128(full, one);
+  if (_mm_cvtsi128_si64(less) == 0) return;
+  auto* const place = reinterpret_cast<__m128i*>(free);
+  _mm_storel_epi64(place, _mm_subs_epu8(_mm_loadl_epi64(place), less));
+}
+
+/// count_free() in the lanes of the mask that were near a surface; whether there was one.
+__attribute__((target("avx2"))) bool count_free(const std::uint8_t* near, std::uint8_t* free, int mask,
+                                                int persistence) {
+  const __m128i seen = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(near));
+  const __m128i old = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(free));
+  const __m128i lanes = _mm_andnot_si128(_mm_cmpeq_epi8(seen, _mm_setzero_si128()),
+                                         _mm_cvtsi64_si128(static_cast<long long>(kBytes.bytes[mask])));
+  // Not where free - persistence >= near.
+  const __m128i ahead = _mm_subs_epu8(old, _mm_set1_epi8(static_cast<char>(persistence)));
+  const __m128i full = _mm_cmpeq_epi8(_mm_max_epu8(ahead, seen), ahead);
+  _mm_storel_epi64(reinterpret_cast<__m128i*>(free), _mm_adds_epu8(old, _mm_andnot_si128(full, lanes)));
+  return _mm_cvtsi128_si64(lanes) != 0;
+}
+
+/// The lanes of `near` that contradict what three frames or more saw.
+__attribute__((target("avx2"))) __m256 contradicting(const KernelFrame& f, const std::uint8_t* frames, __m256 near,
+                                                     __m256 off, __m256 old, __m256 weight) {
+  const __m256i count = _mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(frames)));
+  const __m256 sure = _mm256_castsi256_ps(_mm256_cmpgt_epi32(count, _mm256_set1_epi32(kSure - 1)));
+  const __m256 far =
+      _mm256_cmp_ps(_mm256_mul_ps(_mm256_mul_ps(off, off), _mm256_mul_ps(old, weight)),
+                    _mm256_mul_ps(_mm256_set1_ps(f.gate_squared), _mm256_add_ps(old, weight)), _CMP_GT_OQ);
+  const __m256 apart =
+      _mm256_cmp_ps(_mm256_andnot_ps(_mm256_set1_ps(-0.0f), off), _mm256_set1_ps(f.gate_least), _CMP_GT_OQ);
+  return _mm256_and_ps(_mm256_and_ps(near, sure), _mm256_and_ps(far, apart));
+}
+
+/// contradict() in the lanes of the mask.
+__attribute__((target("avx2"))) void contradict(const KernelFrame& f, KernelBlock& b, int row, int mask, __m256 d,
+                                                __m256 weight) {
+  alignas(32) float ds[kLanes], weights[kLanes];
+  _mm256_store_ps(ds, d);
+  _mm256_store_ps(weights, weight);
+  for (int x = 0; x < kLanes; ++x) {
+    if (mask >> x & 1) contradict(b, row, x, ds[x], weights[x], f.persistence);
   }
-  _mm_storel_epi64(reinterpret_cast<__m128i*>(frames), _mm_adds_epu8(old, one));
-  return _mm_cvtsi128_si64(one) != 0;
 }
 
 __attribute__((target("avx2"))) void integrate_avx2(const KernelFrame& f, KernelBlock& b) {
@@ -126,7 +198,9 @@ __attribute__((target("avx2"))) void integrate_avx2(const KernelFrame& f, Kernel
     const __m256i at = _mm256_and_si256(_mm256_slli_epi32(pixel, 3), _mm256_castps_si256(seen));
     const __m256 free = _mm256_and_ps(seen, _mm256_cmp_ps(Z, _mm256_i32gather_ps(pixels, at, 4), _CMP_LT_OQ));
     const int free_lanes = _mm256_movemask_ps(free);
-    if (free_lanes != 0 && count_up(b.free + row * kLanes, free_lanes, b.near + row * kLanes)) b.looked_through = true;
+    if (free_lanes != 0 && count_free(b.near + row * kLanes, b.free + row * kLanes, free_lanes, f.persistence)) {
+      b.looked_through = true;
+    }
     if (!f.surfaces) continue;
     const __m256 reach = _mm256_i32gather_ps(pixels + 6, at, 4);
     __m256 near = _mm256_andnot_ps(free, _mm256_and_ps(seen, _mm256_cmp_ps(reach, zero, _CMP_GT_OQ)));
@@ -137,16 +211,27 @@ __attribute__((target("avx2"))) void integrate_avx2(const KernelFrame& f, Kernel
         _mm256_add_ps(_mm256_add_ps(_mm256_mul_ps(nx, X), _mm256_mul_ps(ny, Y)), _mm256_mul_ps(nz, Z));
     const __m256 d = _mm256_sub_ps(across, c);
     near = _mm256_and_ps(near, _mm256_cmp_ps(_mm256_andnot_ps(sign, d), reach, _CMP_LE_OQ));
-    const int near_lanes = _mm256_movemask_ps(near);
+    int near_lanes = _mm256_movemask_ps(near);
     if (near_lanes == 0) continue;
     const __m256 weight = _mm256_i32gather_ps(pixels + 5, at, 4);
     float* const means = b.rows + row * 2 * kLanes;
     float* const weights = means + kLanes;
+    if (f.gate_squared > 0) {
+      const __m256 off = _mm256_sub_ps(d, _mm256_load_ps(means));
+      const __m256 against = contradicting(f, b.near + row * kLanes, near, off, _mm256_load_ps(weights), weight);
+      const int lanes = _mm256_movemask_ps(against);
+      if (lanes != 0) {
+        contradict(f, b, row, lanes, d, weight);
+        near = _mm256_andnot_ps(against, near);
+        near_lanes &= ~lanes;
+        if (near_lanes == 0) continue;
+      }
+    }
     const __m256 mean = _mm256_load_ps(means), old = _mm256_load_ps(weights), sum = _mm256_add_ps(old, weight);
     const __m256 updated = _mm256_add_ps(mean, _mm256_mul_ps(_mm256_sub_ps(d, mean), _mm256_div_ps(weight, sum)));
     _mm256_store_ps(means, _mm256_blendv_ps(mean, updated, near));
     _mm256_store_ps(weights, _mm256_blendv_ps(old, sum, near));
-    count_up(b.near + row * kLanes, near_lanes);
+    count_near(b.near + row * kLanes, b.free + row * kLanes, near_lanes, f.persistence);
     sum_weight = _mm256_add_ps(sum_weight, _mm256_and_ps(near, weight));
     if (shares) {
       const __m256i pair = _mm256_srli_epi32(at, 2);

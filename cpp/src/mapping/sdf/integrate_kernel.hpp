@@ -30,6 +30,9 @@ struct KernelFrame {
   int width = 0, height = 0;
   float fx = 0, fy = 0, cx = 0, cy = 0;  ///< cx, cy with 0.5 added: pixel = floor of the projection.
   float nearest = 0;                     ///< [m]
+  float gate_squared = 0;                ///< Square of SdfOptions::outlier_gate; 0: no gate.
+  float gate_least = 0;                  ///< Differences below this are no contradiction [m].
+  int persistence = 254;                 ///< Most that `near` and `free` differ by.
   float step[3][3] = {};                 ///< Step of one voxel along the map's axis [k], in the camera's frame [m].
 };
 
@@ -38,6 +41,7 @@ struct KernelBlock {
   float* rows = nullptr;        ///< 64 rows of eight means and their eight weights.
   std::uint8_t *near = nullptr, *free = nullptr;
   float sum_weight = 0, sum_white = 0, sum_systematic = 0;  ///< Over this frame's updates.
+  int contradicted = 0;                                     ///< Voxels at which the gate shut.
   bool touched = false;                                     ///< A voxel was seen near a surface.
   bool looked_through = false;                              ///< A voxel of a surface was looked through.
 };

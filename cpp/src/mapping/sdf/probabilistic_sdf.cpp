@@ -1,10 +1,12 @@
 #include "mmgrasp/mapping/probabilistic_sdf.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "mapping/sdf/extract_mesh.hpp"
 #include "mapping/sdf/integrate.hpp"
 #include "mapping/sdf/obstacle_cells.hpp"
+#include "mapping/sdf/query_points.hpp"
 #include "mapping/sdf/ray_march.hpp"
 #include "mapping/sdf/sdf_field.hpp"
 #include "mapping/sdf/sdf_file.hpp"
@@ -17,7 +19,7 @@
 namespace mmgrasp {
 namespace {
 
-constexpr Eigen::Index kPointsOfItem = 4096, kRaysOfItem = 1024;
+constexpr Eigen::Index kFewestPoints = 4096, kMostPoints = 1 << 20, kRaysOfItem = 1024;  // of a work item
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// Calls work(first, last) for pieces of [0, count).
@@ -39,6 +41,9 @@ void SdfOptions::check() const {
           "must be at most 100 voxels: finer ones take too much memory [m]");
   require(max_incidence > 0 && max_incidence < 1.55, "max_incidence", max_incidence,
           "must be above 0 and below 1.55 [rad]");
+  require(outlier_gate == 0 || (std::isfinite(outlier_gate) && outlier_gate >= 3), "outlier_gate", outlier_gate,
+          "must be 0 or at least 3 standard deviations and finite");
+  require(persistence >= 1 && persistence <= 254, "persistence", persistence, "must be from 1 to 254 frames");
   require(std::isfinite(max_memory) && max_memory > 0, "max_memory", max_memory, "must be positive and finite [bytes]");
   resolve_threads(threads);
 }
@@ -68,18 +73,9 @@ SdfValues ProbabilisticSdf::query(const Eigen::Matrix3Xd& points, int threads) c
   out.mean.resize(points.cols());
   out.sigma.resize(points.cols());
   out.known.resize(points.cols());
-  by_pieces(points.cols(), kPointsOfItem, threads, [&](Eigen::Index first, Eigen::Index last) {
-    // Points in any order miss the cache: they are fetched some points ahead.
-    constexpr Eigen::Index kAhead = 12;
-    detail::SdfSampler sampler(*grid_), ahead(*grid_);
-    for (Eigen::Index i = first; i < last; ++i) {
-      if (i + kAhead < last) ahead.prefetch(points.col(i + kAhead));
-      const detail::Sample sample = sampler.at(points.col(i));
-      out.mean[i] = sample.known ? sample.mean : kNaN;
-      out.sigma[i] = sample.known ? std::sqrt(sample.variance) : kNaN;
-      out.known[i] = sample.known;
-    }
-  });
+  const Eigen::Index each = points.cols() / resolve_threads(threads) + 1;
+  by_pieces(points.cols(), std::clamp(each, kFewestPoints, kMostPoints), threads,
+            [&](Eigen::Index first, Eigen::Index last) { detail::query_points(*grid_, points, first, last, out); });
   return out;
 }
 

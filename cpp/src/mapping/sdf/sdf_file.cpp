@@ -16,7 +16,7 @@ namespace mmgrasp::detail {
 namespace {
 
 constexpr char kMagic[] = "mmgrasp probabilistic sdf\n";
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 constexpr std::size_t kHeader = sizeof(kMagic) - 1 + sizeof(kVersion) + sizeof(std::uint64_t);
 
 /// Appends plain values; numbers are little endian, as on every machine this runs on.
@@ -121,6 +121,8 @@ std::string content_of(const SdfGrid& grid) {
   out.add(o.truncation);
   out.add(static_cast<std::int32_t>(o.distance));
   out.add(o.max_incidence);
+  out.add(o.outlier_gate);
+  out.add(static_cast<std::int32_t>(o.persistence));
   out.add(o.max_memory);
   out.add(static_cast<std::int32_t>(grid.frames));
   out.add(static_cast<std::uint64_t>(grid.cameras.size()));
@@ -202,6 +204,8 @@ std::shared_ptr<SdfGrid> grid_of(Reader& in) {
   if (distance < 0 || distance > 1) in.refuse("damaged: a kind of distance that does not exist");
   o.distance = static_cast<SdfDistance>(distance);
   o.max_incidence = in.number();
+  o.outlier_gate = in.number();
+  o.persistence = in.take<std::int32_t>();
   o.max_memory = in.number();
   o.check();
   auto grid = std::make_shared<SdfGrid>(o);

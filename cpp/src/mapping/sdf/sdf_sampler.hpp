@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mapping/sdf/block_neighbours.hpp"
 #include "mapping/sdf/sdf_grid.hpp"
 
 namespace mmgrasp::detail {
@@ -25,11 +26,19 @@ struct Sample {
   bool known = false;
 };
 
-/// Not for several threads at once: it remembers the last block.
+/// Not for several threads at once: it remembers the last blocks.
 class SdfSampler {
  public:
   explicit SdfSampler(const SdfGrid& grid)
-      : grid_(grid), scale_(1 / grid.options.voxel), voxel_(static_cast<float>(grid.options.voxel)) {}
+      : grid_(grid),
+        scale_(1 / grid.options.voxel),
+        voxel_(static_cast<float>(grid.options.voxel)),
+        around_cell_(grid),
+        around_stencil_(grid) {
+    for (const DepthCamera& camera : grid.cameras) {
+      systematic_ = systematic_ || camera.systematic > 0 || camera.systematic_scale > 0;
+    }
+  }
 
   /// The layers' values at a voxel, averaged with weights 1 / variance.
   Node node(int block, int voxel) const {
@@ -67,17 +76,23 @@ class SdfSampler {
   Node node_at(int x, int y, int z) {
     const int block = find({x >> 3, y >> 3, z >> 3});
     if (block < 0) return {};
-    return node(block, ((z & 7) << 6) + ((y & 7) << 3) + (x & 7));
+    return node(block, voxel_of(x, y, z));
+  }
+
+  /// The block of the voxel below a point along each axis; negative: there is none.
+  int block_at(const Eigen::Vector3d& point) {
+    const Eigen::Vector3d g = point * scale_;
+    if (!(g.cwiseAbs().maxCoeff() < 8.0 * kMostBlocks)) return -1;
+    return find({static_cast<int>(std::floor(g.x())) >> 3, static_cast<int>(std::floor(g.y())) >> 3,
+                 static_cast<int>(std::floor(g.z())) >> 3});
   }
 
   /// Fetches what at() will read of this point.
   void prefetch(const Eigen::Vector3d& point) {
-    const Eigen::Vector3d g = point * scale_;
-    if (!(g.cwiseAbs().maxCoeff() < 8.0 * kMostBlocks)) return;
-    const int x = static_cast<int>(std::floor(g.x())), y = static_cast<int>(std::floor(g.y())),
-              z = static_cast<int>(std::floor(g.z()));
-    const int block = find({x >> 3, y >> 3, z >> 3});
+    const int block = block_at(point);
     if (block < 0) return;
+    const int y = static_cast<int>(std::floor(point.y() * scale_)),
+              z = static_cast<int>(std::floor(point.z() * scale_));
     for (const auto& layer : grid_.layers) {
       if (!layer[block]) continue;
       const int row = ((z & 7) << 3) + (y & 7);
@@ -88,22 +103,13 @@ class SdfSampler {
   /// Means at the corners of a cell that are all known, its lowest corner the voxel with these indices; corner k lies
   /// beyond it along x, y, z by the bits of k.
   void corners(int x, int y, int z, float* mean) {
-    const int block = find({x >> 3, y >> 3, z >> 3});
-    const int u = x & 7, v = y & 7, w = z & 7;
-    if (grid_.layers.size() == 1 && u < 7 && v < 7 && w < 7) {
-      const VoxelBlock& voxels = *grid_.layers[0][block];
-      bool all = true;
-      for (int k = 0; k < 8; ++k) {
-        const int i = ((w + (k >> 2)) << 6) + ((v + (k >> 1 & 1)) << 3) + u + (k & 1);
-        all = all && voxels.weight(i) > 0 && !voxels.carved(i);
-        mean[k] = voxels.mean(i);
-      }
-      if (all) return;
-    }
+    float weight[8];
+    around_cell_.enter({x >> 3, y >> 3, z >> 3});
+    if (near_surface({x, y, z}, mean, weight) == Corners::near) return;
     Node corner[8];
     bool near = false;
     for (int k = 0; k < 8; ++k) {
-      corner[k] = node_at(x + (k & 1), y + (k >> 1 & 1), z + (k >> 2));
+      corner[k] = corner_node(x, y, z, k);
       near = near || corner[k].seen == Seen::surface;
     }
     if (near) bound_free_corners(corner);
@@ -117,24 +123,31 @@ class SdfSampler {
     int cell[3];
     float t[3];
     split(g, cell, t);
-    const int block = find({cell[0] >> 3, cell[1] >> 3, cell[2] >> 3});
-    const int x = cell[0] & 7, y = cell[1] & 7, z = cell[2] & 7;
-    if (block >= 0 && grid_.layers.size() == 1 && x < 7 && y < 7 && z < 7) {
-      Sample out;
-      if (inside_block(*grid_.layers[0][block], (z << 6) + (y << 3) + x, t, grid_.correlation[block], out)) return out;
+    around_cell_.enter({cell[0] >> 3, cell[1] >> 3, cell[2] >> 3});
+    const int block = around_cell_.index(0);
+    const std::array<float, 3> correlation = block >= 0 ? grid_.correlation[block] : std::array<float, 3>{1, 1, 1};
+    float mean[8], weight[8];
+    switch (near_surface({cell[0], cell[1], cell[2]}, mean, weight)) {
+      case Corners::unknown:
+        return {};
+      case Corners::near: {
+        float variance[8];
+        for (int k = 0; k < 8; ++k) variance[k] = 1 / weight[k];
+        const float shared = systematic_ ? systematic_variance(cell, t) : 0;
+        return {trilinear(mean, t), trilinear(variance, t) * kept(t, correlation) + shared, true};
+      }
+      case Corners::mixed:
+        break;
     }
     Node corner[8];
-    int first_known = -1;
+    bool near = false;
     for (int k = 0; k < 8; ++k) {
-      const int dx = k & 1, dy = k >> 1 & 1, dz = k >> 2;
-      const bool same = block >= 0 && x + dx < 8 && y + dy < 8 && z + dz < 8;
-      corner[k] = same ? node(block, ((z + dz) << 6) + ((y + dy) << 3) + x + dx)
-                       : node_at(cell[0] + dx, cell[1] + dy, cell[2] + dz);
+      corner[k] = corner_node(cell[0], cell[1], cell[2], k);
       if (corner[k].seen == Seen::nothing) return {};
-      if (first_known < 0 && corner[k].seen == Seen::surface) first_known = k;
+      near = near || corner[k].seen == Seen::surface;
     }
-    if (first_known >= 0) bound_free_corners(corner);
-    return interpolate(corner, t, block >= 0 ? grid_.correlation[block] : std::array<float, 3>{1, 1, 1});
+    if (near) bound_free_corners(corner);
+    return interpolate(corner, t, correlation);
   }
 
   /// Interpolates the values at a cell's corners to a place in it, from (0, 0, 0) to (1, 1, 1).
@@ -211,6 +224,59 @@ class SdfSampler {
     return out;
   }
 
+  static int voxel_of(int x, int y, int z) { return ((z & 7) << 6) + ((y & 7) << 3) + (x & 7); }
+  /// Which block of the neighbours holds corner k of the cell.
+  static int block_of(int x, int y, int z, int k) {
+    return ((x & 7) + (k & 1)) >> 3 | (((y & 7) + (k >> 1 & 1)) >> 3) << 1 | (((z & 7) + (k >> 2)) >> 3) << 2;
+  }
+
+  /// Corner k of the cell; the block of its lowest corner was entered.
+  Node corner_node(int x, int y, int z, int k) {
+    const int block = around_cell_.index(block_of(x, y, z, k));
+    if (block < 0) return {};
+    return node(block, voxel_of(x + (k & 1), y + (k >> 1 & 1), z + (k >> 2)));
+  }
+
+  enum class Corners : std::uint8_t { unknown, near, mixed };
+
+  /// Means and weights of a cell's corners where all are near a surface of the only layer; mixed: ask for the nodes.
+  /// The block of its lowest corner was entered.
+  Corners near_surface(const std::array<int, 3>& cell, float* mean, float* weight) {
+    if (grid_.layers.size() != 1) return Corners::mixed;
+    const int x = cell[0] & 7, y = cell[1] & 7, z = cell[2] & 7;
+    bool looked_through = false, known = true;
+    for (int k = 0; k < 8; k += 2) {  // pairs along x share a row, or cross into the next block
+      const int v = y + (k >> 1 & 1), w = z + (k >> 2), beyond = (v >> 3) << 1 | (w >> 3) << 2;
+      const VoxelBlock* const low = around_cell_.voxels(beyond);
+      const VoxelBlock* const high = x < 7 ? low : around_cell_.voxels(beyond | 1);
+      if (!low || !high) return Corners::unknown;
+      const int row = (w & 7) << 3 | (v & 7), next = (x + 1) & 7;
+      mean[k] = low->rows[row][x];
+      mean[k + 1] = high->rows[row][next];
+      weight[k] = low->rows[row][kBlockSide + x];
+      weight[k + 1] = high->rows[row][kBlockSide + next];
+      looked_through |= low->looked_through | high->looked_through;
+    }
+    for (int k = 0; k < 8; ++k) known &= weight[k] > 0;
+    if (!known) return Corners::unknown;
+    if (looked_through) {
+      for (int k = 0; k < 8; ++k) {
+        const VoxelBlock& voxels = *around_cell_.voxels(block_of(x, y, z, k));
+        if (voxels.carved(voxel_of(x + (k & 1), y + (k >> 1 & 1), z + (k >> 2)))) return Corners::mixed;
+      }
+    }
+    return Corners::near;
+  }
+
+  /// The systematic variance of the only layer, between the blocks of a cell's corners.
+  float systematic_variance(const int* cell, const float* t) {
+    float of_corner[8];
+    for (int k = 0; k < 8; ++k) {
+      of_corner[k] = around_cell_.voxels(block_of(cell[0], cell[1], cell[2], k))->systematic_variance();
+    }
+    return trilinear(of_corner, t);
+  }
+
   /// The common case of direction(): one layer, all voxels around near a surface. Each is read once.
   bool differences_near_surface(const Eigen::Vector3d& point, Eigen::Vector3d& out) {
     const Eigen::Vector3d g = point * scale_;
@@ -218,17 +284,21 @@ class SdfSampler {
     int cell[3];
     float t[3];
     split(g, cell, t);
+    const int first[3] = {cell[0] - 1, cell[1] - 1, cell[2] - 1};
+    around_stencil_.enter({first[0] >> 3, first[1] >> 3, first[2] >> 3});
     float mean[4][4][4];  // [z][y][x] from one voxel before the cell to one behind it, without edges and corners
-    for (int z = -1; z <= 2; ++z) {
-      for (int y = -1; y <= 2; ++y) {
-        const int outside = (z < 0 || z > 1) + (y < 0 || y > 1);
-        for (int x = outside == 0 ? -1 : 0; outside < 2 && x <= (outside == 0 ? 2 : 1); ++x) {
-          const int place[3] = {cell[0] + x, cell[1] + y, cell[2] + z};
-          const int block = find({place[0] >> 3, place[1] >> 3, place[2] >> 3});
-          const VoxelBlock* voxels = block < 0 ? nullptr : grid_.layers[0][block].get();
-          const int voxel = ((place[2] & 7) << 6) + ((place[1] & 7) << 3) + (place[0] & 7);
-          if (!voxels || !(voxels->weight(voxel) > 0) || voxels->carved(voxel)) return false;
-          mean[z + 1][y + 1][x + 1] = voxels->mean(voxel);
+    for (int z = 0; z < 4; ++z) {
+      for (int y = 0; y < 4; ++y) {
+        const int outside = (z == 0 || z == 3) + (y == 0 || y == 3);
+        if (outside == 2) continue;
+        const int v = (first[1] & 7) + y, w = (first[2] & 7) + z, beyond = (v >> 3) << 1 | (w >> 3) << 2;
+        const int row = (w & 7) << 3 | (v & 7);
+        for (int x = outside == 0 ? 0 : 1; x <= (outside == 0 ? 3 : 2); ++x) {
+          const int u = (first[0] & 7) + x;
+          const VoxelBlock* const voxels = around_stencil_.voxels(beyond | u >> 3);
+          if (!voxels || !(voxels->rows[row][kBlockSide + (u & 7)] > 0)) return false;
+          if (voxels->looked_through && voxels->carved(row << 3 | (u & 7))) return false;
+          mean[z][y][x] = voxels->rows[row][u & 7];
         }
       }
     }
@@ -242,23 +312,6 @@ class SdfSampler {
       }
       out[k] = 0.5 * (static_cast<double>(end[1]) - end[0]);
     }
-    return true;
-  }
-
-  /// The common case: eight voxels of one block, one layer, all near a surface.
-  bool inside_block(const VoxelBlock& voxels, int first, const float* t, const std::array<float, 3>& correlation,
-                    Sample& out) const {
-    static constexpr int kOffsets[8] = {0, 1, 8, 9, 64, 65, 72, 73};
-    float mean[8], variance[8];
-    for (int k = 0; k < 8; ++k) {
-      const int i = first + kOffsets[k];
-      if (!(voxels.weight(i) > 0) || voxels.carved(i)) return false;
-      mean[k] = voxels.mean(i);
-      variance[k] = 1 / voxels.weight(i);
-    }
-    out.mean = trilinear(mean, t);
-    out.variance = trilinear(variance, t) * kept(t, correlation) + voxels.systematic_variance();
-    out.known = true;
     return true;
   }
 
@@ -293,6 +346,8 @@ class SdfSampler {
   const SdfGrid& grid_;
   const double scale_;
   const float voxel_;
+  bool systematic_ = false;  ///< Some camera has a systematic error.
+  BlockNeighbours around_cell_, around_stencil_;
   BlockKey last_key_;
   int last_ = -1;
   bool last_valid_ = false;

@@ -113,20 +113,19 @@ CoverAnswer pair_by_fine_covers(Placement& placement, const ShapePair& pair, dou
   if (a.solid->is_box != b.solid->is_box) {
     const BodyShape &box = a.solid->is_box ? a : b, &other = a.solid->is_box ? b : a;
     const Rigid &T_box = a.solid->is_box ? T_a : T_b, &T_other = a.solid->is_box ? T_b : T_a;
-    return cover_tree_against_box(other.bounds->fine(*other.solid).covers, T_other, *box.solid, T_box, motion,
+    return cover_tree_against_box(other.bounds->levels(*other.solid), T_other, *box.solid, T_box, motion,
                                   seek_overlap);
   }
+  // The grid of the larger body, if it has one: the smaller one has the smaller spheres.
+  const bool a_larger = a.solid->sphere_radius > b.solid->sphere_radius;
   const auto by_grid = [&](const BodyShape& body, const Rigid& T_body, const BodyShape& covered,
                            const Rigid& T_covered) {
-    const auto& grid = body.bounds->fine(*body.solid).grid;
-    if (grid == nullptr) return kMaybe;
-    return cover_in_grid(*grid, T_body, covered.bounds->fine(*covered.solid).covers, T_covered, motion, seek_overlap);
+    return cover_in_grid(*body.bounds->grid(*body.solid), T_body, covered.bounds->levels(*covered.solid), T_covered,
+                         motion, seek_overlap);
   };
-  // The grid of the larger body first: the smaller one has the smaller spheres.
-  const bool a_larger = a.solid->sphere_radius > b.solid->sphere_radius;
-  const CoverAnswer answer = a_larger ? by_grid(a, T_a, b, T_b) : by_grid(b, T_b, a, T_a);
-  if (answer != kMaybe) return answer;
-  return a_larger ? by_grid(b, T_b, a, T_a) : by_grid(a, T_a, b, T_b);
+  const auto is_mesh = [](const BodyShape& shape) { return shape.solid->kind == SolidKind::mesh; };
+  if (is_mesh(a) && (a_larger || !is_mesh(b))) return by_grid(a, T_a, b, T_b);
+  return is_mesh(b) ? by_grid(b, T_b, a, T_a) : kMaybe;
 }
 
 // Lower bounds of the clearance by the first covers; not above 0 where they prove none. Of a pair, the second cover is
@@ -163,7 +162,7 @@ bool pair_meets_exactly(Placement& placement, const ShapePair& pair, const Closi
     const bool grid_of_a = a.solid->sphere_radius < b.solid->sphere_radius;
     const BodyShape &first = grid_of_a ? a : b, &second = grid_of_a ? b : a;
     return meshes_collide(*first.solid, placement.pose(grid_of_a ? pair.a : pair.b),
-                          *first.bounds->fine(*first.solid).grid, *second.solid,
+                          *first.bounds->grid(*first.solid), *second.solid,
                           placement.pose(grid_of_a ? pair.b : pair.a), grid_of_a ? closing : closing.swapped(),
                           hulls_meet);
   }
@@ -223,7 +222,7 @@ CoverAnswer scene_by_covers(Placement& placement, int s, int scene_shape) {
     const int sphere = placement.plan().sphere_of[s];
     const Eigen::Vector3d centre = other.T_world.R.transpose() * (placement.sphere_centre(sphere) - other.T_world.t);
     if (other.solid->grid->distance(centre) > placement.spheres().radius[sphere] + other.solid->margin) return kApart;
-    return cover_in_grid(*other.solid->grid, other.T_world, shape.bounds->fine(*shape.solid).covers, placement.pose(s),
+    return cover_in_grid(*other.solid->grid, other.T_world, shape.bounds->levels(*shape.solid), placement.pose(s),
                          grow, true);
   }
   if constexpr (!runs(kCoverStage)) return kMaybe;

@@ -48,19 +48,26 @@ BoundingVolumes::BoundingVolumes(const Solid& solid, const Shape& shape) {
   cover_.pad();
 }
 
-const BoundingVolumes::Fine& BoundingVolumes::fine(const Solid& solid) const {
-  std::call_once(once_, [&] {
-    fine_.covers.resize(kLevels);
+const CoverLevels& BoundingVolumes::levels(const Solid& solid) const {
+  std::call_once(levels_once_, [&] {
+    levels_.resize(kLevels);
     if (cover_.empty()) return;
     if (const auto mesh = mesh_.lock()) {
-      cover_mesh(*mesh, solid, fine_.covers);
-      fine_.grid = std::make_unique<const DistanceGrid>(*mesh, solid);
+      cover_mesh(*mesh, solid, levels_);
     } else {
-      cover_primitive(shape_, fine_.covers);
+      cover_primitive(shape_, levels_);
     }
-    fine_.covers.front().pad();
+    levels_.front().pad();
   });
-  return fine_;
+  return levels_;
+}
+
+const DistanceGrid* BoundingVolumes::grid(const Solid& solid) const {
+  std::call_once(grid_once_, [&] {
+    const auto mesh = mesh_.lock();
+    if (mesh && !cover_.empty()) grid_ = std::make_unique<const DistanceGrid>(*mesh, solid);
+  });
+  return grid_.get();
 }
 
 }  // namespace mmgrasp::detail

@@ -51,20 +51,19 @@ class MMGRASP_EXPORT BoundingVolumes {
   /// The bounding box cut into cells, a sphere for each cell's part of the body. Empty for planes and voxels.
   const SphereCover& cover() const { return cover_; }
 
-  /// Cover in levels and distance grid, made when first needed: most bodies never come that close to others.
-  struct Fine {
-    CoverLevels covers;                        ///< kLevels of them.
-    std::unique_ptr<const DistanceGrid> grid;  ///< Distances to a mesh; null for other shapes.
-  };
-  /// `solid` is the one it was made with. Safe from several threads.
-  const Fine& fine(const Solid& solid) const;
+  /// Cover in kLevels levels, and distances to a mesh (null for other shapes): made when first needed, each for itself,
+  /// since most bodies never come that close to others and few need both. `solid` is the one it was made with. Safe
+  /// from several threads.
+  const CoverLevels& levels(const Solid& solid) const;
+  const DistanceGrid* grid(const Solid& solid) const;
 
  private:
   SphereCover cover_;
   Shape shape_;                             // primitives
   std::weak_ptr<const TriangleMesh> mesh_;  // lives in the robot, which outlives the queries
-  mutable std::once_flag once_;
-  mutable Fine fine_;
+  mutable std::once_flag levels_once_, grid_once_;
+  mutable CoverLevels levels_;
+  mutable std::unique_ptr<const DistanceGrid> grid_;
 };
 
 }  // namespace mmgrasp::detail

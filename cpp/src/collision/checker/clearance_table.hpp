@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "collision/broad/sphere_cover.hpp"
+#include "collision/narrow/closing.hpp"
 #include "collision/narrow/solid.hpp"
 #include "mmgrasp/core/export.hpp"
 
@@ -28,7 +29,8 @@ struct TableBody {
 };
 
 /// Lower bounds of the clearance between two bodies of a robot that two revolute joints part, over both angles: cells
-/// in three sizes, the clearance in the middle of each measured when first needed. A cell depends on nothing else, so
+/// in three sizes, the clearance in the middle of each measured when first needed. Where that is too little, a cell of
+/// the finest size is proven free as a whole, if it is, with the directions in which the bodies' points move. A cell depends on nothing else, so
 /// answers do not depend on earlier queries. Safe from several threads.
 class MMGRASP_EXPORT ClearanceTable {
  public:
@@ -46,9 +48,14 @@ class MMGRASP_EXPORT ClearanceTable {
   static constexpr int kLevels = 3;
   using Code = std::atomic<std::uint8_t>;
 
-  double clearance_in_middle(int level, int i, int j) const;
-  double measured(int level, int i, int j) const;
-  bool collide(const Rigid& b_in_a, double more) const;
+  /// The code of a cell: 0 not measured yet, kWholeCell, or 1 + the clearance in its middle in quanta.
+  std::uint8_t code(int level, int i, int j) const;
+  std::uint8_t measured(int level, int i, int j) const;
+  bool collide(const Rigid& b_in_a, const Closing& closing) const;
+  /// Whether the bodies are proven apart everywhere in a cell of the finest level.
+  bool stays_apart_in_cell(int i, int j) const;
+  /// Whether the finest cell at the angles is proven so.
+  bool in_whole_cell(double first, double second) const;
   double widest(int level) const;
 
   const Solid &a_, &b_;

@@ -54,7 +54,7 @@ void CollisionSearch::gather_near(const Placement& placement, int first, int las
   }
 }
 
-bool CollisionSearch::body_is_free(Placement& placement, int body, EdgeMotion& motion, double reach, bool& proven) {
+bool CollisionSearch::body_is_free(Placement& placement, int body, EdgeMotion& motion, double reach, double& share) {
   const ScenePacks& packs = placement.snapshot().packs;
   const SphereRows sphere = placement.spheres().from(body);
   const double radius = *sphere.radius;
@@ -68,20 +68,37 @@ bool CollisionSearch::body_is_free(Placement& placement, int body, EdgeMotion& m
   }
   const Closing closing = motion.of_body(body, reach);
   if (runs(kSphereStage) && clearance > closing.most) return true;
-  // A body that moves far is only tested where it is: what its sphere, grown by the motion, meets would hardly ever
-  // turn out to stay clear.
+  // A body that moves far is only tested for shapes that its sphere meets: others would hardly ever turn out to stay
+  // clear of all of its way.
   const bool far = closing.most > kMaxProvenMotion;
-  const auto grown = static_cast<float>(runs(kSphereStage) ? radius + (far ? 0 : closing.most) : 1e9);
+  if (runs(kSphereStage) && far && clearance > 0) {
+    share = std::min(share, closing.share(clearance));
+    return true;
+  }
+  const auto grown = static_cast<float>(runs(kSphereStage) ? radius + closing.most : 1e9);
+  const auto touched = static_cast<float>(runs(kSphereStage) ? radius * radius : 1e18);
   const auto hits_near = [&](int pack, const float* distances) {
+    float apart = grown * grown;  // the nearest that the sphere does not meet, where such shapes are left at that
     for (int lane = 0; lane < kLanes; ++lane) {
       if (distances[lane] > grown * grown) continue;
-      if (hits_scene_shape(placement, placement.plan().moving[body], packs.item(pack, lane), closing, far, proven))
-        return true;
+      double by_sphere = 0;
+      if (distances[lane] > touched) {
+        if (far) {
+          apart = std::min(apart, distances[lane]);
+          continue;
+        }
+        by_sphere = closing.share(std::sqrt(distances[lane]) - radius);
+        if (by_sphere >= share) continue;
+      }
+      const int shape = placement.plan().moving[body], other = packs.item(pack, lane);
+      const Within within = scene_within(placement, shape, other, closing);
+      if (within.touch) return found_in_scene(shape, other);
+      share = std::min(share, std::max(by_sphere, within.share));
     }
+    if (apart < grown * grown) share = std::min(share, closing.share(std::sqrt(apart) - radius));
     return false;
   };
   if (packs.flat()) {
-    if (far) proven = false;
     for (int k = 0; k < packs.count(); ++k) {
       if (hits_near(k, squared + k * kLanes)) return false;
     }
@@ -91,18 +108,8 @@ bool CollisionSearch::body_is_free(Placement& placement, int body, EdgeMotion& m
   return !packs.packs_near(around, [&](int pack) {
     const float nearest = kernels().boxes_from_point(packs.data() + pack, 1, around[0], around[1], around[2], squared);
     if (runs(kSphereStage) && std::sqrt(nearest) - radius > closing.most) return false;
-    if (far) proven = false;
     return hits_near(pack, squared);
   });
-}
-
-bool CollisionSearch::hits_scene_shape(Placement& placement, int shape, int other, const Closing& closing, bool far,
-                                       bool& proven) {
-  if (far) return detail::scene_collides(placement, shape, other) && found_in_scene(shape, other);
-  const CoverAnswer answer = scene_within(placement, shape, other, closing);
-  if (answer == kApart) return false;
-  proven = false;
-  return answer == kOverlap && found_in_scene(shape, other);
 }
 
 bool CollisionSearch::covers_hit_scene(Placement& placement, const std::vector<int>& shapes, int count,

@@ -23,9 +23,9 @@ class CollisionSearch {
   /// The first contact in the order of the plan, self before scene.
   std::optional<Contact> first_contact(Placement& placement);
 
-  /// False when plan().moving[body] hits a bounded shape of the scene. Clears `proven` unless it stays free up to
-  /// `reach` pieces of the edge away.
-  bool body_is_free(Placement& placement, int body, EdgeMotion& motion, double reach, bool& proven);
+  /// False when plan().moving[body] hits a bounded shape of the scene. Lowers `share` to how much of the way to the
+  /// checks `reach` pieces of the edge away it surely stays free for.
+  bool body_is_free(Placement& placement, int body, EdgeMotion& motion, double reach, double& share);
   void remember_pair(int varying) { last_pair_ = varying; }
 
   /// Forgets what depends on where the root stands.
@@ -47,8 +47,6 @@ class CollisionSearch {
   /// The pairs in `unsure_`, and the unbounded shapes of the scene.
   bool unsure_shapes_hit_scene(Placement& placement, const std::vector<int>& shapes, int count);
   bool last_hits_scene(Placement& placement);
-  /// One of them, for body_is_free().
-  bool hits_scene_shape(Placement& placement, int shape, int other, const Closing& closing, bool far, bool& proven);
   bool found_in_scene(int shape, int other) {
     last_shape_ = shape;
     last_scene_ = other;

@@ -27,7 +27,7 @@ void EdgeMotion::start(const Placement& placement, const Eigen::VectorXd& q0, co
 
 Closing EdgeMotion::of_body(int body, double reach) {
   Closing out;
-  out.most = with_slack(body_rates_[body] * reach);
+  out.most = out.by_rates = of_body_anywhere(body, reach);
   if (half_squares_.size() == 0 || reach == 0) return out;
   const Velocity& v = velocity(body);
   out.centre = placement_->sphere_centre(body);
@@ -38,7 +38,7 @@ Closing EdgeMotion::of_body(int body, double reach) {
 
 Closing EdgeMotion::of_pair(int pair, double reach) {
   Closing out;
-  out.most = of_pair_anywhere(pair, reach);
+  out.most = out.by_rates = of_pair_anywhere(pair, reach);
   if (half_squares_.size() == 0 || reach == 0) return out;
   const ShapePair& shapes = placement_->plan().varying[pair];
   const int sphere = rates_->b_moves[pair] ? shapes.sphere_b : shapes.sphere_a;
@@ -58,7 +58,8 @@ void EdgeMotion::add_velocity(const Eigen::Vector3d& linear, const Eigen::Vector
   out.shift = with_slack(1) * reach * linear;
   out.turn = with_slack(1) * reach * angular;
   out.bend = with_slack(bend * reach * reach);
-  out.most = std::min(out.most, out.shift.norm() + out.turn.norm() * radius + out.bend);
+  out.speed = out.shift.norm() + out.turn.norm() * radius;
+  out.most = std::min(out.most, out.speed + out.bend);
 }
 
 void EdgeMotion::find_velocities() {

@@ -26,7 +26,7 @@ double clearance_to(const SceneShape& other, const Eigen::Vector3d& centre, doub
 
 }  // namespace
 
-void EdgeWalk::place(long at) {
+void EdgeWalk::place(int at) {
   if (at == placed_) return;
   placed_ = at;
   q_ = q0_ + delta_ * (static_cast<double>(at) / static_cast<double>(pieces_));
@@ -41,12 +41,12 @@ bool EdgeWalk::all_free(Placement& placement, CollisionSearch& search, const Eig
   search_ = &search;
   q0_ = q0;
   delta_ = q1 - q0;
-  pieces_ = pieces;
+  pieces_ = static_cast<int>(pieces);
   placed_ = 0;
   if constexpr (!runs(kIntervalStage)) return each_is_free();
   // Most blocked edges hit the scene in the middle, deep enough for covers to tell: that is asked before anything is
   // proven about the edge.
-  place(pieces / 2);
+  place(pieces_ / 2);
   if (search.surely_hits_scene(placement)) {
     checks_ = 1;
     return false;
@@ -63,13 +63,13 @@ bool EdgeWalk::intervals_free() {
   open_.clear();
   if (snapshot.options.check_scene && !snapshot.scene.empty()) {
     // The outer links are the ones that hit something.
-    for (int i = plan.moving_in_scene; i-- > 0;) open_.push_back(i);
+    for (int i = plan.moving_in_scene; i-- > 0;) open_.push_back({i, 0, pieces_});
   }
   const std::size_t bodies = open_.size();
   if (snapshot.options.check_self) {
-    for (int i = 0; i < static_cast<int>(plan.varying.size()); ++i) open_.push_back(i);
+    for (int i = 0; i < static_cast<int>(plan.varying.size()); ++i) open_.push_back({i, 0, pieces_});
   }
-  queue_.assign(1, {0, pieces_, 0, bodies, open_.size()});
+  queue_.assign(1, {pieces_ / 2, 0, bodies, open_.size()});
   bool depth_first = false;
   for (std::size_t next = 0; next < queue_.size();) {
     depth_first = depth_first || queue_.size() - next > kMaxWaitingIntervals;
@@ -81,24 +81,33 @@ bool EdgeWalk::intervals_free() {
     } else {
       ++next;
     }
-    const long middle = (interval.low + interval.high) / 2;
-    const long reach = std::max(middle - interval.low, interval.high - middle) - 1;
-    Interval rest = interval;
-    if (!check(interval, middle, static_cast<double>(reach), rest)) return false;
-    if (rest.end == rest.bodies || tables_clear(rest)) continue;
-    rest.high = middle;
-    if (rest.high - rest.low > 1) queue_.push_back(rest);
-    rest.low = middle;
-    rest.high = interval.high;
-    if (rest.high - rest.low > 1) queue_.push_back(rest);
+    if (!check(interval)) return false;
   }
   // What was proven counts as checked.
   checks_ = pieces_ - 1;
   return true;
 }
 
+void EdgeWalk::keep(const Open& entry, int at, int proven) {
+  const Open left{entry.index, entry.low, std::min(entry.high, at - proven)};
+  const Open right{entry.index, std::max(entry.low, at + proven), entry.high};
+  if (left.any()) left_.push_back(left);
+  if (right.any()) right_.push_back(right);
+}
+
+void EdgeWalk::queue(const std::vector<Open>& side, std::size_t bodies) {
+  if (side.empty()) return;
+  if (bodies == 0 && std::all_of(side.begin(), side.end(), [&](const Open& pair) { return table_clears(pair); }))
+    return;
+  const Open widest = *std::max_element(
+      side.begin(), side.end(), [](const Open& a, const Open& b) { return a.high - a.low < b.high - b.low; });
+  const std::size_t begin = open_.size();
+  open_.insert(open_.end(), side.begin(), side.end());
+  queue_.push_back({widest.low + (widest.high - widest.low) / 2, begin, begin + bodies, open_.size()});
+}
+
 bool EdgeWalk::each_is_free() {
-  for (long at = 1; at < pieces_; ++at) {
+  for (int at = 1; at < pieces_; ++at) {
     ++checks_;
     place(at);
     if (!search_->is_free(*placement_)) return false;
@@ -106,78 +115,90 @@ bool EdgeWalk::each_is_free() {
   return true;
 }
 
-bool EdgeWalk::check(const Interval& interval, long at, double reach, Interval& rest) {
+bool EdgeWalk::check(const Interval& interval) {
   ++checks_;
-  place(at);
+  place(interval.at);
   motion_.placed();
-  rest.bodies = open_.size();
-  if (!bodies_free(interval, reach)) return false;
-  rest.pairs = open_.size();
-  if (!pairs_free(interval, reach)) return false;
-  rest.end = open_.size();
+  left_.clear();
+  right_.clear();
+  if (!bodies_free(interval)) return false;
+  const std::size_t left = left_.size(), right = right_.size();
+  if (!pairs_free(interval)) return false;
+  queue(left_, left);
+  queue(right_, right);
   return true;
 }
 
-bool EdgeWalk::bodies_free(const Interval& interval, double reach) {
+bool EdgeWalk::bodies_free(const Interval& interval) {
   const Snapshot& snapshot = placement_->snapshot();
+  const int at = interval.at;
   for (std::size_t n = interval.bodies; n < interval.pairs; ++n) {
-    const int body = open_[n];
-    bool proven = true;
-    if (!search_->body_is_free(*placement_, body, motion_, reach, proven)) return false;
+    const Open entry = open_[n];
+    const int body = entry.index;
+    const double reach = std::max(at - entry.low, entry.high - at) - 1;
+    double share = 1;
+    if (!search_->body_is_free(*placement_, body, motion_, reach, share)) return false;
     for (int i = snapshot.packed; i < static_cast<int>(snapshot.scene.size()); ++i) {
       if (snapshot.allowed(placement_->plan().moving[body], i)) continue;
       const double radius = placement_->spheres().radius[body];
-      if (clearance_to(snapshot.scene[i], placement_->sphere_centre(body), radius) > motion_.of_body(body, reach).most)
-        continue;
-      proven = false;
-      if (scene_collides(*placement_, placement_->plan().moving[body], i)) return false;
+      const double clearance = clearance_to(snapshot.scene[i], placement_->sphere_centre(body), radius);
+      const double lasts = motion_.of_body(body, reach).share(clearance);
+      share = std::min(share, lasts);
+      if (lasts < 1 && scene_collides(*placement_, placement_->plan().moving[body], i)) return false;
     }
-    if (!proven) open_.push_back(body);
+    if (share < 1) keep(entry, at, static_cast<int>(share * reach));
   }
   return true;
 }
 
-bool EdgeWalk::tables_clear(const Interval& interval) const {
-  if (!runs(kTableStage) || interval.pairs > interval.bodies) return false;
-  const auto clears = [&](int index) {
-    const ShapePair& pair = placement_->plan().varying[index];
-    const auto [i, j] = pair.columns;
-    const double share = 1 / static_cast<double>(pieces_);
-    return pair.clearances && pair.clearances->stays_apart({q0_[i], q0_[j]}, {delta_[i] * share, delta_[j] * share},
-                                                           interval.low + 1, interval.high - 1);
-  };
-  return std::all_of(open_.begin() + static_cast<long>(interval.pairs), open_.begin() + static_cast<long>(interval.end),
-                     clears);
+bool EdgeWalk::table_clears(const Open& entry) const {
+  const ShapePair& pair = placement_->plan().varying[entry.index];
+  const auto [i, j] = pair.columns;
+  const double share = 1 / static_cast<double>(pieces_);
+  return runs(kTableStage) && pair.clearances &&
+         pair.clearances->stays_apart({q0_[i], q0_[j]}, {delta_[i] * share, delta_[j] * share}, entry.low + 1,
+                                      entry.high - 1);
 }
 
-bool EdgeWalk::pairs_free(const Interval& interval, double reach) {
+bool EdgeWalk::pairs_free(const Interval& interval) {
+  const SphereRows spheres = placement_->spheres();
+  const int at = interval.at;
   for (std::size_t n = interval.pairs; n < interval.end; ++n) {
-    const int index = open_[n];
+    const Open entry = open_[n];
+    const int index = entry.index;
     const ShapePair& pair = placement_->plan().varying[index];
-    const float* radius = placement_->spheres().radius;
+    const double reach = std::max(at - entry.low, entry.high - at) - 1;
     const double clearance =
         (placement_->sphere_centre(pair.sphere_a) - placement_->sphere_centre(pair.sphere_b)).norm() -
-        radius[pair.sphere_a] - radius[pair.sphere_b];
+        spheres.radius[pair.sphere_a] - spheres.radius[pair.sphere_b];
     if (runs(kSphereStage) && clearance > motion_.of_pair_anywhere(index, reach)) continue;
-    // The last check within an interval proves nothing about others.
+    // The last check of an entry proves nothing about others.
     Closing motion;
     if (reach > 0) motion = motion_.of_pair(index, reach);
-    if (runs(kSphereStage) && clearance > motion.most) continue;
+    double share = 0;
+    if (runs(kSphereStage) && clearance > 0) {
+      share = motion.share(clearance);
+      if (share == 1) continue;
+    }
     if (runs(kTableStage) && pair.clearances) {
       const double apart = pair.clearances->at_least(q_[pair.columns[0]], q_[pair.columns[1]], motion.most);
       if (apart > motion.most) continue;
       if (apart > 0) {
-        open_.push_back(index);
+        keep(entry, at, static_cast<int>(std::max(share, motion.share(apart)) * reach));
         continue;
       }
     }
-    const CoverAnswer answer = pair_within(*placement_, pair, motion, memory_[index]);
-    if (answer == kApart) continue;
-    if (answer == kOverlap) {
-      search_->remember_pair(index);
-      return false;
+    // Spheres apart: the rest could only prove more of a way on which hardly any pair stays clear.
+    if (share == 0 || motion.most <= kMaxProvenMotion) {
+      const Within within = pair_within(*placement_, pair, motion, memory_[index]);
+      if (within.touch) {
+        search_->remember_pair(index);
+        return false;
+      }
+      share = std::max(share, within.share);
+      if (share == 1) continue;
     }
-    open_.push_back(index);
+    keep(entry, at, static_cast<int>(share * reach));
   }
   return true;
 }

@@ -57,10 +57,15 @@ std::array<CoverView, BoundingVolumes::kLevels> views(const CoverLevels& covers)
 
 // A body's cover, placed at T_a, against the bounding box of the other one.
 CoverAnswer cover_against_box(const SphereCover& cover, const Rigid& T_a, const Solid& other, const Rigid& T_b,
-                              double grow, bool seek_overlap) {
+                              double grow) {
   const FloatBox box(T_a, other, T_b);
-  return kernels().cover_meets_box(cover.view(), box.T, box.half, static_cast<float>(grow), box.slack(cover),
-                                   seek_overlap);
+  return kernels().cover_meets_box(cover.view(), box.T, box.half, static_cast<float>(grow), box.slack(cover), true);
+}
+
+// A lower bound of their clearance; not above 0 where there is none.
+double cover_clearance(const SphereCover& cover, const Rigid& T_a, const Solid& other, const Rigid& T_b) {
+  const FloatBox box(T_a, other, T_b);
+  return kernels().cover_to_box(cover.view(), box.T, box.half, box.slack(cover));
 }
 
 // The same for its cover in all levels.
@@ -82,11 +87,64 @@ CoverAnswer cover_in_grid(const DistanceGrid& grid, const Rigid& T_grid, const C
 
 // How near two solids, or the hulls around them, come to each other; `touching` also where there is no such hull.
 Nearness hull_nearness(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b, const Closing& closing,
-                       Eigen::Vector3d& axis) {
+                       Eigen::Vector3d& axis, double& share) {
   const auto bounded = [](const Solid& s) { return s.kind == SolidKind::convex || s.has_hull; };
   if (!bounded(a) || !bounded(b)) return Nearness::touching;
   const double margin = a.margin + b.margin;
-  return convex_nearness(a.core, b.core, T_a.to(T_b), closing.seen_from(T_a), margin + kHullTouch, axis);
+  return convex_nearness(a.core, b.core, T_a.to(T_b), closing.seen_from(T_a), margin + kHullTouch, axis, share);
+}
+
+// Whether both have covers at all.
+bool have_covers(const BodyShape& a, const BodyShape& b) {
+  return !a.bounds->cover().empty() && !b.bounds->cover().empty();
+}
+
+// The finer covers in the other body's box or grid. With `motion` > 0 [m] kApart means that the two stay apart while
+// they come no more than that closer, and kMaybe proves nothing.
+CoverAnswer pair_by_fine_covers(Placement& placement, const ShapePair& pair, double motion) {
+  const Snapshot& snapshot = placement.snapshot();
+  const BodyShape &a = snapshot.shapes[pair.a], &b = snapshot.shapes[pair.b];
+  const Rigid &T_a = placement.pose(pair.a), &T_b = placement.pose(pair.b);
+  const bool seek_overlap = motion == 0;
+  if (!runs(kFineStage) || motion > kMaxGridMotion) return kMaybe;
+  // Where their table proves nothing these come too close for covers to tell.
+  if (runs(kTableStage) && pair.clearances) return kMaybe;
+  // A box needs no grid.
+  if (a.solid->is_box != b.solid->is_box) {
+    const BodyShape &box = a.solid->is_box ? a : b, &other = a.solid->is_box ? b : a;
+    const Rigid &T_box = a.solid->is_box ? T_a : T_b, &T_other = a.solid->is_box ? T_b : T_a;
+    return cover_tree_against_box(other.bounds->levels(*other.solid), T_other, *box.solid, T_box, motion,
+                                  seek_overlap);
+  }
+  // The grid of the larger body, if it has one: the smaller one has the smaller spheres.
+  const bool a_larger = a.solid->sphere_radius > b.solid->sphere_radius;
+  const auto by_grid = [&](const BodyShape& body, const Rigid& T_body, const BodyShape& covered,
+                           const Rigid& T_covered) {
+    return cover_in_grid(*body.bounds->grid(*body.solid), T_body, covered.bounds->levels(*covered.solid), T_covered,
+                         motion, seek_overlap);
+  };
+  const auto is_mesh = [](const BodyShape& shape) { return shape.solid->kind == SolidKind::mesh; };
+  if (is_mesh(a) && (a_larger || !is_mesh(b))) return by_grid(a, T_a, b, T_b);
+  return is_mesh(b) ? by_grid(b, T_b, a, T_a) : kMaybe;
+}
+
+// Lower bounds of the clearance by the first covers; not above 0 where they prove none. Of a pair, the second cover is
+// only asked where the first does not prove `wanted` [m].
+double pair_cover_clearance(Placement& placement, const ShapePair& pair, double wanted) {
+  const Snapshot& snapshot = placement.snapshot();
+  const BodyShape &a = snapshot.shapes[pair.a], &b = snapshot.shapes[pair.b];
+  if (!runs(kCoverStage) || !have_covers(a, b)) return 0;
+  const Rigid &T_a = placement.pose(pair.a), &T_b = placement.pose(pair.b);
+  const double first = cover_clearance(a.bounds->cover(), T_a, *b.solid, T_b);
+  return first > wanted ? first : std::max(first, cover_clearance(b.bounds->cover(), T_b, *a.solid, T_a));
+}
+
+double scene_cover_clearance(Placement& placement, int s, int scene_shape) {
+  const BodyShape& shape = placement.snapshot().shapes[s];
+  const SceneShape& other = placement.snapshot().scene[scene_shape];
+  if (!runs(kCoverStage) || shape.bounds->cover().empty()) return 0;
+  return cover_clearance(shape.bounds->cover(), placement.pose(s), *other.solid, other.T_world) - shape.growth -
+         other.solid->margin;
 }
 
 bool spheres_apart(const SphereRows& spheres, int a, int b) {
@@ -104,7 +162,7 @@ bool pair_meets_exactly(Placement& placement, const ShapePair& pair, const Closi
     const bool grid_of_a = a.solid->sphere_radius < b.solid->sphere_radius;
     const BodyShape &first = grid_of_a ? a : b, &second = grid_of_a ? b : a;
     return meshes_collide(*first.solid, placement.pose(grid_of_a ? pair.a : pair.b),
-                          *first.bounds->fine(*first.solid).grid, *second.solid,
+                          *first.bounds->grid(*first.solid), *second.solid,
                           placement.pose(grid_of_a ? pair.b : pair.a), grid_of_a ? closing : closing.swapped(),
                           hulls_meet);
   }
@@ -129,67 +187,47 @@ bool last_piece_hits(Placement& placement, int shape, int scene_shape) {
 }
 
 // Seen from the scene's shape, which stands still, the direction between them lasts longest.
-Nearness hulls_in_scene(Placement& placement, int shape, int scene_shape, const Closing& closing) {
+Nearness hulls_in_scene(Placement& placement, int shape, int scene_shape, const Closing& closing, double& share) {
   const Snapshot& snapshot = placement.snapshot();
   const SceneShape& other = snapshot.scene[scene_shape];
   return hull_nearness(*other.solid, other.T_world, *snapshot.shapes[shape].padded, placement.pose(shape), closing,
-                       placement.memory(shape, scene_shape).axis);
+                       placement.memory(shape, scene_shape).axis, share);
 }
 
 }  // namespace
 
-CoverAnswer pair_by_covers(Placement& placement, const ShapePair& pair, double motion) {
+CoverAnswer pair_by_covers(Placement& placement, const ShapePair& pair) {
   const Snapshot& snapshot = placement.snapshot();
   const BodyShape &a = snapshot.shapes[pair.a], &b = snapshot.shapes[pair.b];
-  if (a.bounds->cover().empty() || b.bounds->cover().empty()) return kMaybe;
-  const Rigid &T_a = placement.pose(pair.a), &T_b = placement.pose(pair.b);
-  const bool seek_overlap = motion == 0;
+  if (!have_covers(a, b)) return kMaybe;
   if constexpr (runs(kCoverStage)) {
-    const CoverAnswer first = cover_against_box(a.bounds->cover(), T_a, *b.solid, T_b, motion, seek_overlap);
+    const Rigid &T_a = placement.pose(pair.a), &T_b = placement.pose(pair.b);
+    const CoverAnswer first = cover_against_box(a.bounds->cover(), T_a, *b.solid, T_b, 0);
     if (first == kApart || (first == kOverlap && b.solid->is_box)) return first;
-    const CoverAnswer second = cover_against_box(b.bounds->cover(), T_b, *a.solid, T_a, motion, seek_overlap);
+    const CoverAnswer second = cover_against_box(b.bounds->cover(), T_b, *a.solid, T_a, 0);
     if (second == kApart || (second == kOverlap && a.solid->is_box)) return second;
   }
-  if (!runs(kFineStage) || motion > kMaxGridMotion) return kMaybe;
-  // A box needs no grid.
-  if (a.solid->is_box != b.solid->is_box) {
-    const BodyShape &box = a.solid->is_box ? a : b, &other = a.solid->is_box ? b : a;
-    const Rigid &T_box = a.solid->is_box ? T_a : T_b, &T_other = a.solid->is_box ? T_b : T_a;
-    return cover_tree_against_box(other.bounds->fine(*other.solid).covers, T_other, *box.solid, T_box, motion,
-                                  seek_overlap);
-  }
-  const auto by_grid = [&](const BodyShape& body, const Rigid& T_body, const BodyShape& covered,
-                           const Rigid& T_covered) {
-    const auto& grid = body.bounds->fine(*body.solid).grid;
-    if (grid == nullptr) return kMaybe;
-    return cover_in_grid(*grid, T_body, covered.bounds->fine(*covered.solid).covers, T_covered, motion, seek_overlap);
-  };
-  // The grid of the larger body first: the smaller one has the smaller spheres.
-  const bool a_larger = a.solid->sphere_radius > b.solid->sphere_radius;
-  const CoverAnswer answer = a_larger ? by_grid(a, T_a, b, T_b) : by_grid(b, T_b, a, T_a);
-  if (answer != kMaybe) return answer;
-  return a_larger ? by_grid(b, T_b, a, T_a) : by_grid(a, T_a, b, T_b);
+  return pair_by_fine_covers(placement, pair, 0);
 }
 
-CoverAnswer scene_by_covers(Placement& placement, int s, int scene_shape, double motion) {
+CoverAnswer scene_by_covers(Placement& placement, int s, int scene_shape) {
   const Snapshot& snapshot = placement.snapshot();
   const BodyShape& shape = snapshot.shapes[s];
   const SceneShape& other = snapshot.scene[scene_shape];
   if (snapshot.allowed(s, scene_shape)) return kApart;
   const bool unbounded = other.solid->kind == SolidKind::plane || other.solid->kind == SolidKind::field;
   if (shape.bounds->cover().empty() || unbounded) return kMaybe;
-  const double grow = shape.growth + other.solid->margin + motion;
+  const double grow = shape.growth + other.solid->margin;
   if (other.solid->kind == SolidKind::voxels) {
     const int sphere = placement.plan().sphere_of[s];
     const Eigen::Vector3d centre = other.T_world.R.transpose() * (placement.sphere_centre(sphere) - other.T_world.t);
-    if (other.solid->grid->distance(centre) > placement.spheres().radius[sphere] + other.solid->margin + motion)
-      return kApart;
-    return cover_in_grid(*other.solid->grid, other.T_world, shape.bounds->fine(*shape.solid).covers, placement.pose(s),
-                         grow, motion == 0);
+    if (other.solid->grid->distance(centre) > placement.spheres().radius[sphere] + other.solid->margin) return kApart;
+    return cover_in_grid(*other.solid->grid, other.T_world, shape.bounds->levels(*shape.solid), placement.pose(s),
+                         grow, true);
   }
   if constexpr (!runs(kCoverStage)) return kMaybe;
   const CoverAnswer answer =
-      cover_against_box(shape.bounds->cover(), placement.pose(s), *other.solid, other.T_world, grow, motion == 0);
+      cover_against_box(shape.bounds->cover(), placement.pose(s), *other.solid, other.T_world, grow);
   return answer == kOverlap && !other.solid->is_box ? kMaybe : answer;
 }
 
@@ -198,8 +236,9 @@ bool pair_collides_exactly(Placement& placement, const ShapePair& pair) {
 }
 
 bool scene_collides_exactly(Placement& placement, int shape, int scene_shape) {
+  double share = 0;
   if (last_piece_hits(placement, shape, scene_shape)) return true;
-  return hulls_in_scene(placement, shape, scene_shape, {}) == Nearness::touching &&
+  return hulls_in_scene(placement, shape, scene_shape, {}, share) == Nearness::touching &&
          scene_meets_exactly(placement, shape, scene_shape, 0);
 }
 
@@ -221,41 +260,51 @@ bool only_padding_meets(Placement& placement, int shape, int scene_shape) {
   return !solids_collide(*a.solid, placement.pose(shape), *b.bare, b.T_world);
 }
 
-CoverAnswer pair_within(Placement& placement, const ShapePair& pair, const Closing& closing, PairMemory& memory) {
-  const double motion = closing.most;
-  if (motion > 0 && motion <= kMaxProvenMotion) {
-    const CoverAnswer covers = pair_by_covers(placement, pair, motion);
-    if (covers != kMaybe) return covers;
-    if (!memory.hulls_meet) {
-      const Snapshot& snapshot = placement.snapshot();
-      const Solid &a = *snapshot.shapes[pair.a].solid, &b = *snapshot.shapes[pair.b].solid;
-      const Nearness hulls = hull_nearness(a, placement.pose(pair.a), b, placement.pose(pair.b), closing, memory.axis);
-      if (hulls == Nearness::beyond) return kApart;
-      if (hulls == Nearness::near) return kMaybe;
-      memory.hulls_meet = true;
-    }
-    if (motion <= kMaxExactMotion && !pair_meets_exactly(placement, pair, closing, true)) return kApart;
+Within pair_within(Placement& placement, const ShapePair& pair, const Closing& closing, PairMemory& memory) {
+  if (closing.most == 0) return {pair_collides(placement, pair), 0};
+  const Snapshot& snapshot = placement.snapshot();
+  const Solid &a = *snapshot.shapes[pair.a].solid, &b = *snapshot.shapes[pair.b].solid;
+  const double clearance = pair_cover_clearance(placement, pair, std::min(closing.most, kMaxProvenMotion));
+  Within out{false, closing.share(clearance)};
+  if (out.share == 1) return out;
+  if (closing.most > kMaxProvenMotion) {
+    if (clearance <= 0) out.touch = pair_collides(placement, pair);
+    return out;
   }
-  return pair_collides(placement, pair) ? kOverlap : kMaybe;
+  if (have_covers(snapshot.shapes[pair.a], snapshot.shapes[pair.b]) &&
+      pair_by_fine_covers(placement, pair, closing.most) == kApart)
+    return {false, 1};
+  if (!memory.hulls_meet) {
+    double share = 0;
+    if (hull_nearness(a, placement.pose(pair.a), b, placement.pose(pair.b), closing, memory.axis, share) !=
+        Nearness::touching)
+      return {false, std::max(share, out.share)};
+    memory.hulls_meet = true;
+  }
+  if (closing.most <= kMaxExactMotion && !pair_meets_exactly(placement, pair, closing, true)) return {false, 1};
+  if (clearance <= 0) out.touch = pair_collides(placement, pair);
+  return out;
 }
 
-CoverAnswer scene_within(Placement& placement, int s, int scene_shape, const Closing& closing) {
-  const double motion = closing.most;
-  const CoverAnswer covers = scene_by_covers(placement, s, scene_shape, motion);
-  if (covers != kMaybe) return covers;
-  switch (hulls_in_scene(placement, s, scene_shape, closing)) {
-    case Nearness::beyond:
-      return kApart;
-    case Nearness::near:
-      return kMaybe;
-    case Nearness::touching:
-      break;
-  }
-  if (motion <= kMaxExactMotion && !scene_meets_exactly(placement, s, scene_shape, motion)) return kApart;
-  const CoverAnswer here = scene_by_covers(placement, s, scene_shape);
-  if (here != kMaybe) return here == kOverlap ? kOverlap : kMaybe;
-  if (last_piece_hits(placement, s, scene_shape)) return kOverlap;
-  return scene_meets_exactly(placement, s, scene_shape, 0) ? kOverlap : kMaybe;
+Within scene_within(Placement& placement, int s, int scene_shape, const Closing& closing) {
+  if (placement.snapshot().allowed(s, scene_shape)) return {false, 1};
+  const double clearance = scene_cover_clearance(placement, s, scene_shape);
+  Within out{false, closing.share(clearance)};
+  if (out.share == 1) return out;
+  // What moves far hardly ever turns out to stay clear: first whether it hits where it is.
+  const bool far = closing.most > kMaxProvenMotion;
+  if (far && clearance > 0) return out;
+  const auto surely_hits = [&] {
+    return scene_by_covers(placement, s, scene_shape) == kOverlap || last_piece_hits(placement, s, scene_shape);
+  };
+  if (far && surely_hits()) return {true, 0};
+  double share = 0;
+  if (hulls_in_scene(placement, s, scene_shape, closing, share) != Nearness::touching)
+    return {false, std::max(share, out.share)};
+  if (closing.most <= kMaxExactMotion && !scene_meets_exactly(placement, s, scene_shape, closing.most))
+    return {false, 1};
+  if (clearance <= 0) out.touch = (!far && surely_hits()) || scene_meets_exactly(placement, s, scene_shape, 0);
+  return out;
 }
 
 }  // namespace mmgrasp::detail

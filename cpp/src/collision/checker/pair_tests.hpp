@@ -16,10 +16,9 @@ bool scene_collides(Placement& placement, int shape, int scene_shape);
 /// The two collide (as known already), but only because they are padded.
 bool only_padding_meets(Placement& placement, int shape, int scene_shape);
 
-/// What the covers of the two prove. With `motion` > 0 [m] kApart means that they stay apart while they come no more
-/// than that closer, and kMaybe proves nothing.
-CoverAnswer pair_by_covers(Placement& placement, const ShapePair& pair, double motion = 0);
-CoverAnswer scene_by_covers(Placement& placement, int shape, int scene_shape, double motion = 0);
+/// What the covers of the two prove.
+CoverAnswer pair_by_covers(Placement& placement, const ShapePair& pair);
+CoverAnswer scene_by_covers(Placement& placement, int shape, int scene_shape);
 
 /// The same answers without covers, for pairs that those left open.
 bool pair_collides_exactly(Placement& placement, const ShapePair& pair);
@@ -31,9 +30,14 @@ struct PairMemory {
   bool hulls_meet = false;                         ///< Their hulls did lately: they are not tested again.
 };
 
-/// Whether the two touch (kOverlap), stay apart while they come closer as said (kApart), or neither is proven. Where
-/// they come no closer only the first is decided.
-CoverAnswer pair_within(Placement& placement, const ShapePair& pair, const Closing& closing, PairMemory& memory);
-CoverAnswer scene_within(Placement& placement, int shape, int scene_shape, const Closing& closing);
+/// What is known of two shapes where they are, and while they come closer.
+struct Within {
+  bool touch = false;
+  double share = 0;  ///< How much of the closing's stretch they surely stay apart for; 1: all of it.
+};
+
+/// Where they come no closer (`closing.most` 0) only `touch` is decided.
+Within pair_within(Placement& placement, const ShapePair& pair, const Closing& closing, PairMemory& memory);
+Within scene_within(Placement& placement, int shape, int scene_shape, const Closing& closing);
 
 }  // namespace mmgrasp::detail

@@ -84,6 +84,8 @@ struct Kernels {
   /// `seek_overlap` the first sphere that may touch ends the search.
   CoverAnswer (*cover_meets_box)(const CoverView& cover, const FloatRigid& box, const float* half, float grow,
                                  float slack, bool seek_overlap);
+  /// A lower bound of the clearance of the two; not above 0 where a sphere may touch, which ends the search.
+  float (*cover_to_box)(const CoverView& cover, const FloatRigid& box, const float* half, float slack);
   /// A grid against covers placed in its frame, each level with kLanes spheres for each sphere of the level above: only
   /// where a sphere may touch are its parts tested.
   CoverAnswer (*cover_tree_meets_grid)(const GridView& grid, const CoverView* levels, int level_count,

@@ -48,14 +48,20 @@ ClearanceKind convex_clearance(const Convex& a, const Convex& b, const Rigid& b_
 }
 
 Nearness convex_nearness(const Convex& a, const Convex& b, const Rigid& b_in_a, const Closing& closing, double touch,
-                         Eigen::Vector3d& axis) {
+                         Eigen::Vector3d& axis, double& share) {
   const double grown = a.radius + b.radius + a.rough_error + b.rough_error;
   const double least = touch + grown;  // of the cores
   if (!(axis.squaredNorm() > 1e-20)) axis = a.centre - b_in_a * b.centre;
   if (!(axis.squaredNorm() > 1e-20)) axis = Eigen::Vector3d::UnitX();
   Simplex simplex;
   double best = kInfinity;  // squared length of the simplex's closest point
-  bool parted = false;
+  double room = 0;  // of the plane that parted them last
+  Eigen::Vector3d normal = axis;
+  const auto end = [&] {
+    if (room <= 0) return Nearness::touching;
+    share = closing.share_along(normal, room);
+    return Nearness::near;
+  };
   for (int i = 0; i < kMaxIterations; ++i) {
     SimplexPoint p;
     p.on_a = a.support_roughly(-axis);
@@ -63,8 +69,12 @@ Nearness convex_nearness(const Convex& a, const Convex& b, const Rigid& b_in_a, 
     p.w = p.on_a - p.on_b;
     const double along = axis.dot(p.w), least_along = least * axis.norm();
     if (along > least_along) {
-      if (along > least_along + closing.along(axis)) return Nearness::beyond;
-      parted = true;
+      room = along - least_along;
+      normal = axis;
+      if (room > closing.along(axis)) {
+        share = 1;
+        return Nearness::beyond;
+      }
     }
     if (i > 0 && (best - along <= 1e-13 * best || simplex.holds(p.w))) break;
     simplex.add(p);
@@ -72,12 +82,12 @@ Nearness convex_nearness(const Convex& a, const Convex& b, const Rigid& b_in_a, 
     const Eigen::Vector3d closest = simplex.closest();
     const double squared = closest.squaredNorm();
     // A point of the difference lies nearer than that: little hope is left.
-    if (parted && squared < least * std::sqrt(squared) + closing.along(closest)) return Nearness::near;
+    if (room > 0 && squared < least * std::sqrt(squared) + closing.along(closest)) return end();
     if (squared <= touching_clearance(p) * touching_clearance(p) || !(squared < best)) break;
     best = squared;
     axis = closest;
   }
-  return parted ? Nearness::near : Nearness::touching;
+  return end();
 }
 
 }  // namespace mmgrasp::detail

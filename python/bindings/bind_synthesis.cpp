@@ -306,14 +306,6 @@ void bind_synthesis(py::module_& m) {
         call.search.table = table;
         call.search.object = box_argument(object);
         require(surface_draws >= 0, "surface_draws", surface_draws, "must be zero or positive");
-        require(arm != nullptr || world == nullptr, "world", "given", "goes with an arm");
-        ArmReach reach;
-        if (arm != nullptr) {
-          const Eigen::VectorXd seed = arm_seed.is_none()
-                                           ? Eigen::VectorXd((arm->sample_lower() + arm->sample_upper()) / 2)
-                                           : configuration_argument(arm_seed, "arm_seed", arm->size());
-          reach = make_arm_reach(world ? with_sampled_pairs(*arm) : *arm, seed, world);
-        }
         const ArmReach reach = reach_argument(arm, world, arm_seed);
         return LongCall(progress).run([&](const Monitor& monitor) {
           const auto model = robot ? make_hand_model(hand, *robot) : make_hand_model(hand);

@@ -277,22 +277,8 @@ void bind_sdf(py::module_& m) {
           "integrate",
           [](ProbabilisticSdf& sdf, const DepthImage& image, const DepthCamera& camera,
              const OptionalArray& pose_covariance, const OptionalArray& sigma) {
-            FrameUncertainty uncertainty;
-            if (!pose_covariance.is_none()) {
-              const Eigen::MatrixXd C = matrix_argument(pose_covariance, "pose_covariance", 6);
-              require(C.rows() == 6, "pose_covariance", static_cast<double>(C.rows()), "must have 6 rows");
-              uncertainty.pose_covariance = C;
-            }
-            if (!sigma.is_none()) {
-              const Eigen::MatrixXd s = matrix_argument(sigma, "sigma", image.camera.width);
-              for (Eigen::Index v = 0; v < s.rows(); ++v) {
-                for (Eigen::Index u = 0; u < s.cols(); ++u) uncertainty.sigma.push_back(static_cast<float>(s(v, u)));
-              }
-            }
-            return interruptible([&] { return sdf.integrate(image, camera, uncertainty); });
             const FrameUncertainty uncertainty = uncertainty_argument(image, pose_covariance, sigma);
-            py::gil_scoped_release release;
-            return sdf.integrate(image, camera, uncertainty);
+            return interruptible([&] { return sdf.integrate(image, camera, uncertainty); });
           },
           "image"_a, "camera"_a, py::kw_only(), "pose_covariance"_a = py::none(), "sigma"_a = py::none(),
           "Adds a frame. `pose_covariance` (6, 6): of the error of T_world_camera, displacement [m] first, then\n"

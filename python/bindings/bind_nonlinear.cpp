@@ -312,7 +312,7 @@ void bind_solver(py::module_& m) {
          const Progress& progress, const py::kwargs& options) {
         const NlpOptions read = read_options(nlp_fields(), options, "solve_nonlinear");
         const std::shared_ptr<NonlinearProblem> to_solve = shared_problem(problem, "problem");
-        const Eigen::VectorXd guess = vector_argument(given_guess, "guess");
+        const Eigen::VectorXd guess = vector_argument(given_guess, "guess", to_solve->variable_bounds().lower.size());
         return LongCall(progress).run(
             [&](const Monitor& monitor) { return solve_nonlinear(solver, *to_solve, guess, read, monitor); });
       },

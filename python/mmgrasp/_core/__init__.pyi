@@ -3857,7 +3857,7 @@ class NonlinearProblem:
     """
     def __init__(self, base: NonlinearProblem | None = None) -> None:
         """
-        Of one's own, on top of another problem or on none.
+        A problem of one's own, on top of `base` or on none.
         """
     def constraint_bounds(self) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
         """
@@ -3867,15 +3867,15 @@ class NonlinearProblem:
         """
         What messages call a constraint.
         """
-    def constraints(self, x: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
+    def constraints(self, x: numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
         """
         c(x), (m,)
         """
-    def gradient(self, x: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
+    def gradient(self, x: numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
         """
         (n,) of f
         """
-    def hessian(self, x: numpy.typing.ArrayLike, factor: float, multipliers: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
+    def hessian(self, x: numpy.typing.NDArray[numpy.float64], factor: float, multipliers: numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
         """
         Values of the lower triangle of factor * f'' + sum_i multipliers[i] * c_i''.
         """
@@ -3883,7 +3883,7 @@ class NonlinearProblem:
         """
         Rows and columns (row >= column) of the Hessian's entries, in the order of `hessian`; entries that repeat add up.
         """
-    def jacobian(self, x: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
+    def jacobian(self, x: numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
         """
         Values of the Jacobian's entries.
         """
@@ -3891,7 +3891,7 @@ class NonlinearProblem:
         """
         Rows (constraints) and columns (variables) of the Jacobian's entries, in the order of `jacobian`; entries that repeat add up.
         """
-    def objective(self, x: numpy.typing.ArrayLike) -> float:
+    def objective(self, x: numpy.typing.NDArray[numpy.float64]) -> float:
         """
         f(x)
         """

@@ -15,7 +15,18 @@ from typing import Any
 import numpy as np
 
 from .. import _core
-from .._core import BaseGrid, Box, CollisionChecker, Grasp, LinkShape, Part, PartSupplyProblem, ReachDatabase, Tray, World
+from .._core import (
+    BaseGrid,
+    Box,
+    CollisionChecker,
+    Grasp,
+    LinkShape,
+    Part,
+    PartSupplyProblem,
+    ReachDatabase,
+    Tray,
+    World,
+)
 from .._files import shipped
 from .._progress import Progress
 from ..documents.reading import read_yaml

@@ -65,9 +65,7 @@ class _Solver:
         if np.linalg.norm(T_base_tip[:2, 3]) > 1.2:
             return False
         found = self.arm.ik(T_base_tip, seed=self.home, restarts=self.restarts, time_limit=10.0)
-        return found.outcome == _core.Outcome.solved and bool(
-            self.checks.free(np.array([base]), found.q[None])[0]
-        )
+        return found.outcome == _core.Outcome.solved and bool(self.checks.free(np.array([base]), found.q[None])[0])
 
 
 def by_database(row: Row, samples: int) -> dict[str, Any]:

@@ -20,7 +20,7 @@ from .._progress import Progress
 from .entry import Context, Result
 from .setup import ChecksAtBase, Row, database, reach_samples
 
-REDUNDANT_VALUES = (12, 96)  # of the seventh joint, for exact inverse kinematics; the many where the few find nothing free
+REDUNDANT_VALUES = (12, 96)  # of the seventh joint; the many where the few give no free configuration
 ROUND = 8  # configurations of a pose that are checked together before the next ones are looked at
 
 

@@ -265,7 +265,8 @@ void bind_reach(py::module_& m) {
                 [&](const Monitor& monitor) { return ReachDatabase::load_or_build(group, read, folder, monitor); });
           },
           py::arg("arm"), py::arg("cache_dir"), py::kw_only(), py::arg("progress") = py::none(),
-          ("The database of this arm and these options from the cache folder; built and stored when it is not there. One "
+          ("The database of this arm and these options from the cache folder; built and stored when it is not there. "
+           "One "
            "that is damaged is built anew in its place, which `progress` hears as the stage 'replacing a damaged "
            "reachability database'." +
            option_help(reach_fields()))
@@ -303,8 +304,10 @@ void bind_reach(py::module_& m) {
           "difference",
           [](const ReachDatabase& db, const JointGroup& arm) { return db.difference(with_sampled_pairs(arm)); },
           py::arg("arm"), "What of the arm has changed since the build, in words; empty when nothing.")
-      .def_property_readonly("arrays", &arrays, "Read-only views of the database's arrays, by file name. Raises IoError where configurations differ from "
-                             "their checksums, which are compared the first time.")
+      .def_property_readonly(
+          "arrays", &arrays,
+          "Read-only views of the database's arrays, by file name. Raises IoError where configurations differ from "
+          "their checksums, which are compared the first time.")
       .def_property_readonly("path", &ReachDatabase::path, "The folder; empty for a database in memory only.")
       .def_property_readonly(
           "joint_lower", [](const ReachDatabase& db) { return reach_arrays(db).joint_lower; },

@@ -2,8 +2,8 @@
 #include <ctime>
 
 #include "bindings.hpp"
-#include "drive_by_arguments.hpp"
 #include "checker_argument.hpp"
+#include "drive_by_arguments.hpp"
 #include "mmgrasp/optim/nlp_solver.hpp"
 #include "mmgrasp/task/drive_by.hpp"
 #include "push_fields.hpp"

@@ -80,8 +80,7 @@ TEST(NeverTouch, NoPairOfRealRobotsIsDroppedThatTouches) {
   MMGRASP_NEEDS_SHARED_DATA();
   RobotOptions load;
   load.package_dirs["moveit_resources_panda_description"] = shared("robots/panda/moveit_resources_panda_description");
-  const Robot robot =
-      compute_disabled_pairs(Robot::load(shared("robots/panda/expanded/panda.urdf"), "", load));
+  const Robot robot = compute_disabled_pairs(Robot::load(shared("robots/panda/expanded/panda.urdf"), "", load));
   int dropped = 0;
   for (const auto& [pair, reason] : robot.disabled_pairs()) {
     if (reason != DisabledReason::never) continue;
@@ -96,8 +95,8 @@ TEST(NeverTouch, NoPairOfRealRobotsIsDroppedThatTouches) {
       for (const Joint& joint : robot.joints()) {
         if (joint.value_index < 0) continue;
         const double share = rng.uniform(0, 1);
-        values[joint.value_index] = s % 2 ? rng.uniform(joint.lower, joint.upper)
-                                          : (share < 0.5 ? joint.lower : joint.upper);
+        values[joint.value_index] =
+            s % 2 ? rng.uniform(joint.lower, joint.upper) : (share < 0.5 ? joint.lower : joint.upper);
       }
       const Poses poses = robot.link_poses(values);
       ASSERT_FALSE(fcl_reference::touch(body_a, poses[pair.first] * a.collisions[0].T_link_shape, body_b,

@@ -107,8 +107,7 @@ TEST(LeastStops, RadiiOfDiscsThatJustFit) {
       }
       layout.regions.push_back(region);
     }
-    for (const mmgrasp::Intersection& some :
-         mmgrasp::robust_intersections(layout.grid, layout.regions, 1e-3).robust) {
+    for (const mmgrasp::Intersection& some : mmgrasp::robust_intersections(layout.grid, layout.regions, 1e-3).robust) {
       const mmgrasp::StopSet stops = planned(layout, some.radius);
       if (stops.outcome == mmgrasp::Outcome::infeasible) continue;  // some other tray has no room for it
       ASSERT_EQ(stops.outcome, mmgrasp::Outcome::solved);

@@ -20,8 +20,9 @@ struct MMGRASP_EXPORT DisabledPairsOptions {
 
 /// The robot with its disabled pairs computed: adjacent (joined by at most one movable joint with no shape in between),
 /// always (from random samples), never (proven over all values of the joints in between, see docs/methods/collision.md;
-/// pairs that many joints part mostly have no such proof and stay enabled). Pairs that are disabled already (by an SRDF)
-/// are kept. The same seed gives the same pairs at any thread count. Stopped early, only the adjacent ones are added.
+/// pairs that many joints part mostly have no such proof and stay enabled). Pairs that are disabled already (by an
+/// SRDF) are kept. The same seed gives the same pairs at any thread count. Stopped early, only the adjacent ones are
+/// added.
 MMGRASP_EXPORT Robot compute_disabled_pairs(const Robot& robot, const DisabledPairsOptions& options = {},
                                             const Monitor& monitor = {});
 

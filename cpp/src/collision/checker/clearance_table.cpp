@@ -161,9 +161,9 @@ bool ClearanceTable::stays_apart_in_cell(int i, int j) const {
   closing.shift = closing.turn.cross(closing.centre - first.t);
   closing.second_turn = half * second.R.col(2);
   closing.second_shift = closing.second_turn.cross(closing.centre - second.t);
-  // Along a straight way in both angles a point p bends from it by at most half of |w1 x (w1 x u1)| + |w2 x (w2 x u2)| +
-  // 2 |w1 x (w2 x u2)|, u_k leading from axis k to p: no farther anywhere in the cell than the spheres' radii here and
-  // what half a cell turns them.
+  // Along a straight way in both angles a point p bends from it by at most half of |w1 x (w1 x u1)| + |w2 x (w2 x u2)|
+  // + 2 |w1 x (w2 x u2)|, u_k leading from axis k to p: no farther anywhere in the cell than the spheres' radii here
+  // and what half a cell turns them.
   const double reach_1 = (1 + 2 * half) * ((closing.centre - first.t).norm() + closing.radius);
   const double reach_2 = (closing.centre - second.t).norm() + closing.radius;
   closing.bend = 0.5 * half * half * (reach_1 + 3 * reach_2) + kRounding;
@@ -174,8 +174,7 @@ bool ClearanceTable::stays_apart_in_cell(int i, int j) const {
 
 bool ClearanceTable::collide(const Rigid& b_in_a, const Closing& closing) const {
   const Rigid T_a;
-  if (a_.sphere_radius < b_.sphere_radius)
-    return meshes_collide(a_, T_a, *bounds_a_.grid(a_), b_, b_in_a, closing);
+  if (a_.sphere_radius < b_.sphere_radius) return meshes_collide(a_, T_a, *bounds_a_.grid(a_), b_, b_in_a, closing);
   return meshes_collide(b_, b_in_a, *bounds_b_.grid(b_), a_, T_a, closing.swapped());
 }
 

@@ -30,8 +30,8 @@ struct TableBody {
 
 /// Lower bounds of the clearance between two bodies of a robot that two revolute joints part, over both angles: cells
 /// in three sizes, the clearance in the middle of each measured when first needed. Where that is too little, a cell of
-/// the finest size is proven free as a whole, if it is, with the directions in which the bodies' points move. A cell depends on nothing else, so
-/// answers do not depend on earlier queries. Safe from several threads.
+/// the finest size is proven free as a whole, if it is, with the directions in which the bodies' points move. A cell
+/// depends on nothing else, so answers do not depend on earlier queries. Safe from several threads.
 class MMGRASP_EXPORT ClearanceTable {
  public:
   /// The bodies must outlive it.

@@ -99,8 +99,8 @@ void EdgeWalk::queue(const std::vector<Open>& side, std::size_t bodies) {
   if (side.empty()) return;
   if (bodies == 0 && std::all_of(side.begin(), side.end(), [&](const Open& pair) { return table_clears(pair); }))
     return;
-  const Open widest = *std::max_element(
-      side.begin(), side.end(), [](const Open& a, const Open& b) { return a.high - a.low < b.high - b.low; });
+  const Open widest = *std::max_element(side.begin(), side.end(),
+                                        [](const Open& a, const Open& b) { return a.high - a.low < b.high - b.low; });
   const std::size_t begin = open_.size();
   open_.insert(open_.end(), side.begin(), side.end());
   queue_.push_back({widest.low + (widest.high - widest.low) / 2, begin, begin + bodies, open_.size()});

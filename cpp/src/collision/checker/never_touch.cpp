@@ -10,7 +10,8 @@ namespace mmgrasp::detail {
 
 namespace {
 
-constexpr double kBeyondLimits = 1e-4;  // values a little outside of their printed limits are taken as within [rad or m]
+constexpr double kBeyondLimits =
+    1e-4;  // values a little outside of their printed limits are taken as within [rad or m]
 constexpr double kLeastClearance = 1e-6;  // nearer bodies count as touching [m]
 
 }  // namespace

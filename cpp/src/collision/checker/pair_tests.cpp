@@ -113,8 +113,7 @@ CoverAnswer pair_by_fine_covers(Placement& placement, const ShapePair& pair, dou
   if (a.solid->is_box != b.solid->is_box) {
     const BodyShape &box = a.solid->is_box ? a : b, &other = a.solid->is_box ? b : a;
     const Rigid &T_box = a.solid->is_box ? T_a : T_b, &T_other = a.solid->is_box ? T_b : T_a;
-    return cover_tree_against_box(other.bounds->levels(*other.solid), T_other, *box.solid, T_box, motion,
-                                  seek_overlap);
+    return cover_tree_against_box(other.bounds->levels(*other.solid), T_other, *box.solid, T_box, motion, seek_overlap);
   }
   // The grid of the larger body, if it has one: the smaller one has the smaller spheres.
   const bool a_larger = a.solid->sphere_radius > b.solid->sphere_radius;
@@ -161,10 +160,9 @@ bool pair_meets_exactly(Placement& placement, const ShapePair& pair, const Closi
     // Few large triangles look for their like in a grid around the smaller body.
     const bool grid_of_a = a.solid->sphere_radius < b.solid->sphere_radius;
     const BodyShape &first = grid_of_a ? a : b, &second = grid_of_a ? b : a;
-    return meshes_collide(*first.solid, placement.pose(grid_of_a ? pair.a : pair.b),
-                          *first.bounds->grid(*first.solid), *second.solid,
-                          placement.pose(grid_of_a ? pair.b : pair.a), grid_of_a ? closing : closing.swapped(),
-                          hulls_meet);
+    return meshes_collide(*first.solid, placement.pose(grid_of_a ? pair.a : pair.b), *first.bounds->grid(*first.solid),
+                          *second.solid, placement.pose(grid_of_a ? pair.b : pair.a),
+                          grid_of_a ? closing : closing.swapped(), hulls_meet);
   }
   return solids_collide(*a.solid, placement.pose(pair.a), *b.solid, placement.pose(pair.b), closing.most);
 }
@@ -222,8 +220,8 @@ CoverAnswer scene_by_covers(Placement& placement, int s, int scene_shape) {
     const int sphere = placement.plan().sphere_of[s];
     const Eigen::Vector3d centre = other.T_world.R.transpose() * (placement.sphere_centre(sphere) - other.T_world.t);
     if (other.solid->grid->distance(centre) > placement.spheres().radius[sphere] + other.solid->margin) return kApart;
-    return cover_in_grid(*other.solid->grid, other.T_world, shape.bounds->levels(*shape.solid), placement.pose(s),
-                         grow, true);
+    return cover_in_grid(*other.solid->grid, other.T_world, shape.bounds->levels(*shape.solid), placement.pose(s), grow,
+                         true);
   }
   if constexpr (!runs(kCoverStage)) return kMaybe;
   const CoverAnswer answer =

@@ -19,7 +19,8 @@ struct Closing {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero(), shift = Eigen::Vector3d::Zero(), turn = Eigen::Vector3d::Zero();
   Eigen::Vector3d second_shift = Eigen::Vector3d::Zero(), second_turn = Eigen::Vector3d::Zero();
   double radius = 0, bend = 0;
-  double by_rates = 0;  ///< A bound of `most` that grows evenly along the stretch [m]; `speed` likewise, but for `bend`.
+  double by_rates =
+      0;  ///< A bound of `most` that grows evenly along the stretch [m]; `speed` likewise, but for `bend`.
   double speed = 0;
 
   /// How far the body's points move along n, times the length of n.
@@ -50,7 +51,8 @@ struct Closing {
     const double length = n.norm();
     double out = share(way / length);
     way -= kRounding * length;
-    if (directed && way > 0) out = std::max(out, root(std::abs(n.dot(shift)) + n.cross(turn).norm() * radius, bend * length, way));
+    if (directed && way > 0)
+      out = std::max(out, root(std::abs(n.dot(shift)) + n.cross(turn).norm() * radius, bend * length, way));
     return std::min(out, 1.0);
   }
   Closing seen_from(const Rigid& frame) const {

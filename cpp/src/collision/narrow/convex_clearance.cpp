@@ -55,7 +55,7 @@ Nearness convex_nearness(const Convex& a, const Convex& b, const Rigid& b_in_a, 
   if (!(axis.squaredNorm() > 1e-20)) axis = Eigen::Vector3d::UnitX();
   Simplex simplex;
   double best = kInfinity;  // squared length of the simplex's closest point
-  double room = 0;  // of the plane that parted them last
+  double room = 0;          // of the plane that parted them last
   Eigen::Vector3d normal = axis;
   const auto end = [&] {
     if (room <= 0) return Nearness::touching;

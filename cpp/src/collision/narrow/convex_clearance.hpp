@@ -30,8 +30,8 @@ enum class Nearness { beyond, near, touching };
 /// Whether the clearance of two convex bodies is more than `touch` [m] even after they came closer as `closing` says
 /// (frame of a; beyond), not proven to be (near, but more than `touch`), or not proven to be more than `touch`: GJK
 /// that stops as soon as one of the three is certain. `axis` (frame of a, from b to a; zero: none) is where the search
-/// starts and, on return, the last direction looked along. `share`: how much of the closing's stretch the clearance lasts
-/// for, as far as known.
+/// starts and, on return, the last direction looked along. `share`: how much of the closing's stretch the clearance
+/// lasts for, as far as known.
 Nearness convex_nearness(const Convex& a, const Convex& b, const Rigid& b_in_a, const Closing& closing, double touch,
                          Eigen::Vector3d& axis, double& share);
 

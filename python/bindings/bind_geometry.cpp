@@ -112,16 +112,17 @@ void bind_mesh(py::module_& m) {
       .def_static(
           "from_arrays",
           [](const ArrayLike& vertices, const ArrayLike& triangles) {
-            std::vector<Eigen::Vector3d> points;
-            for (const Eigen::VectorXd& p : rows_argument(vertices, "vertices", 3)) points.emplace_back(p);
-            std::vector<std::array<int, 3>> faces;
-            for (const Eigen::VectorXd& row : rows_argument(triangles, "triangles", 3)) {
-              std::array<int, 3>& face = faces.emplace_back();
-              for (int i = 0; i < 3; ++i) {
-                require(row[i] == std::floor(row[i]) && row[i] >= 0 && row[i] < static_cast<double>(points.size()),
-                        "triangles", row[i], "must be numbers of vertices, from 0 on");
-                face[i] = static_cast<int>(row[i]);
-              }
+            const auto corners = batch_argument(vertices, "vertices", 3),
+                       numbers = batch_argument(triangles, "triangles", 3);
+            std::vector<Eigen::Vector3d> points(corners.shape(0));
+            if (!points.empty()) std::copy(corners.data(), corners.data() + corners.size(), points[0].data());
+            std::vector<std::array<int, 3>> faces(numbers.shape(0));
+            for (std::size_t i = 0; i < 3 * faces.size(); ++i) {
+              const double number = numbers.data()[i];
+              // Messages are put together for what is refused only.
+              if (number != std::floor(number) || !(number >= 0 && number < static_cast<double>(points.size())))
+                require(false, "triangles", number, "must be numbers of vertices, from 0 on");
+              faces[i / 3][i % 3] = static_cast<int>(number);
             }
             return MeshShape{interruptible([&] { return make_mesh(std::move(points), std::move(faces)); })};
           },

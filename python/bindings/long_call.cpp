@@ -42,24 +42,20 @@ void end_calls_at_exit() {
 
 bool LongCall::wait() {
   const Waiting waiting;
-  const bool may_sleep = !is_main_thread();
-  while (true) {
-    bool done = false;
-    {
-      py::gil_scoped_release release;
-      if (may_sleep && g_closing) sleep_for_ever();
-      std::unique_lock lock(mutex_);
-      changed_.wait_for(lock, kPoll, [this] { return done_; });
-      done = done_;
-    }
-    if (done) return true;
-    if (PyErr_CheckSignals() != 0) break;
-    try {
+  try {  // all that runs Python may raise KeyboardInterrupt, and nothing may leave before the thread has ended
+    const bool may_sleep = !is_main_thread();
+    while (true) {
+      {
+        py::gil_scoped_release release;
+        if (may_sleep && g_closing) sleep_for_ever();
+        std::unique_lock lock(mutex_);
+        if (changed_.wait_for(lock, kPoll, [this] { return done_; })) return true;
+      }
+      if (PyErr_CheckSignals() != 0) break;
       hand_over_progress();
-    } catch (py::error_already_set& error) {
-      error.restore();
-      break;
     }
+  } catch (py::error_already_set& error) {
+    error.restore();
   }
   monitor_.stop.stop();
   return false;

@@ -166,7 +166,7 @@ WORK: dict[str, Work] = {
     "simplify_mesh, decimated": Work(_decimate),
     "simplify_mesh, hull": Work(_hull),
     "CollisionChecker": Work(_checker),
-    "World.add_points": Work(_points, (0.1, 0.5, 1.0)),
+    "World.add_points": Work(_points, (0.1, 0.3, 0.5)),
     "read_pcd": Work(_pcd, (0.1, 0.3, 0.6)),
     "make_height_map": Work(_height_map),
 }

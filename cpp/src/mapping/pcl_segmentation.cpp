@@ -39,15 +39,15 @@ Cloud::Ptr to_pcl(const std::vector<Eigen::Vector3d>& points) {
   return cloud;
 }
 
-/// PCL's searches for planes ask for every plane that they try how many points lie on it. Once interrupted there are
-/// none, so that the rest takes no time: an exception must not leave PCL's loop, which is compiled for OpenMP.
+/// PCL's searches for planes ask for every plane that they try how many points lie on it. Once interrupted all
+/// do, which ends the search: an exception must not leave PCL's loop, which is compiled for OpenMP.
 template <typename Model>
 class InterruptibleModel : public Model {
  public:
   using Model::Model;
   std::size_t countWithinDistance(const Eigen::VectorXf& coefficients, const double threshold) const override {
     const CancelToken* interruption = interruption_token();
-    if (interruption != nullptr && interruption->stopped()) return 0;
+    if (interruption != nullptr && interruption->stopped()) return this->indices_->size();
     return Model::countWithinDistance(coefficients, threshold);
   }
 };

@@ -26,7 +26,7 @@ class Nearest {
  public:
   Nearest(std::vector<Near>& storage, int count) : found_(storage), count_(count) {
     found_.clear();
-    found_.reserve(std::min<std::size_t>(count_, 1024));  // whatever is asked for, a database may hold little
+    found_.reserve(count_);
   }
   /// Finite while there is room, so that cells out of bounds (at infinity) stay out.
   float worst() const { return found_.size() < count_ ? std::numeric_limits<float>::max() : found_.back().distance; }
@@ -185,6 +185,7 @@ int ReachDatabase::nearest(const Pose& T_base_tip, int count, Eigen::MatrixXd& o
   // Tested before the messages are made: strings would allocate on every call.
   if (count <= 0) require(false, "count", count, "must be positive");
   if (!T_base_tip.matrix().allFinite()) require(false, "T_base_tip", "not finite", "must be a pose");
+  count = static_cast<int>(std::min<std::int64_t>(count, std::max<std::int64_t>(size(), 1)));
   if (out.rows() != data_->joints || out.cols() < count) out.resize(data_->joints, count);
   if (data_->size() == 0) return 0;
 

@@ -88,8 +88,7 @@ Intersection RegionPatches::shared(const std::vector<TrayId>& trays, int heading
       place.cells += all ? 1 : 0;
     }
   }
-  const InscribedCircle circle =
-      inscribed_circle_in_cells(x1 - x0, y1 - y0, cells, kCircleError / grid_.resolution);
+  const InscribedCircle circle = inscribed_circle_in_cells(x1 - x0, y1 - y0, cells, kCircleError / grid_.resolution);
   place.radius = circle.radius * grid_.resolution;
   place.centre = grid_.origin + (circle.centre + Eigen::Vector2d(x0, y0)) * grid_.resolution;
   return place;

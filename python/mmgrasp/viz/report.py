@@ -158,7 +158,8 @@ def _obstructions(plan: dict[str, Any]) -> str:
             where += f", part {item['part']}"
         advice = ""
         if item["largest_uncertainty"] >= 0 and item["stage"] == "robustness":
-            advice = f" The largest positioning uncertainty that works is {item['largest_uncertainty']:.7g} m."
+            largest = f"{item['largest_uncertainty']:.5f}".removesuffix("00")  # advised in steps of 1e-5 m
+            advice = f" The largest positioning uncertainty that works is {largest} m."
         if item["reach_deficit"] > 0:
             advice += f" The reach falls short by {item['reach_deficit']:.3f} m."
         items.append(f'<div class="bad"><b>{escape(where)}</b>: {escape(item["message"])}{escape(advice)}</div>')

@@ -35,8 +35,7 @@ class Shortener {
       const bool gained = i % 3 == 2 && !edges_.steered() ? shortcut_one_joint() : shortcut();
       without_gain = gained ? 0 : without_gain + 1;
     }
-    // Other bases' paths lose their redundant waypoints later, at the final resolution.
-    if (edges_.steered()) skip_waypoints();
+    skip_waypoints();
   }
 
  private:

@@ -219,7 +219,8 @@ TEST(SdfQueries, BadArgumentsAreNamed) {
   expect_contains(message([&] { sdf.cast_rays(points, Eigen::Matrix3Xd::Ones(3, 5)); }), "directions = 5");
   points(1, 2) = NAN;
   expect_contains(message([&] { sdf.query(points); }), "point 2.y = nan: must be finite");
-  expect_contains(message([&] { sdf.cast_rays(points, Eigen::Matrix3Xd::Ones(3, 4)); }), "origin 2.y = nan: must be finite");
+  expect_contains(message([&] { sdf.cast_rays(points, Eigen::Matrix3Xd::Ones(3, 4)); }),
+                  "origin 2.y = nan: must be finite");
 }
 
 TEST_F(BadFrame, FilesThatAreNoMap) {

@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import Any
 
 import mmgrasp as mg
-from argument_objects import ARM, GOAL, PASSED, START, WHOLE_BODY, occupancy_map, sdf_map, whole_body
+from argument_objects import ARM, PASSED, WHOLE_BODY, occupancy_map, sdf_map
+from mmgrasp.reproduce.drive_by import GOAL, START, whole_body
 
 # Numbers that may be infinite: no limit, no bound, nothing farther away.
 UNBOUNDED = {

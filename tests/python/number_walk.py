@@ -93,7 +93,7 @@ def shaped(value: Any, annotation: str, name: str) -> Any:
 
 
 def shown_at(one: Try) -> tuple[Call, Parameter]:
-    """Of calls shown in several ways the first that takes the number."""
+    """The first call, of those shown in several ways, that takes the number."""
     return next((c, p) for c in CALLS if c.function == one.function for p in c.parameters if p.name == one.parameter)
 
 

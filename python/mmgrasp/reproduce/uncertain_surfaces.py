@@ -92,10 +92,11 @@ def distance_to(shapes: list[LinkShape], points: np.ndarray) -> np.ndarray:
     least = np.full(len(points), np.inf)
     for each in shapes:
         local = (points - each.pose[:3, 3]) @ each.pose[:3, :3]
+        assert isinstance(each.shape, Capsule | Sphere)
         half = each.shape.length / 2 if isinstance(each.shape, Capsule) else 0.0
         local[:, 2] -= np.clip(local[:, 2], -half, half)
         least = np.minimum(least, np.linalg.norm(local, axis=1) - each.shape.radius)
-    return np.abs(least)
+    return np.asarray(np.abs(least))
 
 
 def difference(a: list[list[float]], b: list[list[float]]) -> tuple[float, float]:
@@ -229,11 +230,18 @@ def measure_criterion(criterion: str, frames: int, seed: int) -> dict[str, Any]:
     weights = {f"{name}_weight": float(name == criterion) for name in CRITERIA}
     if criterion == "all":
         weights = {"angle_weight": 0.6, "placement_weight": 0.1, "centring_weight": 0.2, "certainty_weight": 0.1}
-    search = {"angle_weight": weights["angle_weight"], "placement_weight": weights["placement_weight"]}
     found = _core.synthesize_grasps(
-        sdf, gripper(), table=0.0, samples=1000, seed=seed, threads=1,
-        centring_weight=weights["centring_weight"], certainty_weight=weights["certainty_weight"], **search,
-    )  # fmt: skip
+        sdf,
+        gripper(),
+        table=0.0,
+        samples=1000,
+        seed=seed,
+        threads=1,
+        angle_weight=weights["angle_weight"],
+        placement_weight=weights["placement_weight"],
+        centring_weight=weights["centring_weight"],
+        certainty_weight=weights["certainty_weight"],
+    )
     if not found.grasps:
         return {"found": False, "why": found.summary()}
     success = found.ratings[0].success

@@ -64,7 +64,7 @@ def _azimuth(row: dict[str, Any]) -> float:
 
 
 def _draw_grasp(axis: Any, grasp: dict[str, Any], length: float) -> None:
-    from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+    from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # type: ignore[import-untyped]
 
     middles = []
     for patch in grasp["patches"]:

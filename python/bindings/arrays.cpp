@@ -7,6 +7,7 @@
 #include <numeric>
 #include <sstream>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/limits.hpp"
 
@@ -48,7 +49,6 @@ py::array array_of(const py::handle& value, const std::string& name, const std::
   throw InvalidInput(name + " = <" + given + ">: must be an array of " + wanted);
 }
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kFinite = std::numeric_limits<double>::max();
 
 /// `shape`: lengths, -1 for any. They are looked at first: a copy of what cannot fit may take all memory. No number is
@@ -71,9 +71,9 @@ Array numbers(const py::handle& value, const std::string& name, const std::vecto
                                     ? "(" + std::to_string(i / columns) + ", " + std::to_string(i % columns) + ")"
                                     : std::to_string(i);
       throw InvalidInput(name + " holds " + shown(array.data()[i]) + " at entry " + entry +
-                         (largest == kInfinite ? ": must be a number"
-                          : largest == kFinite ? ": must be finite"
-                                               : ": must be finite and within " + shown(largest)));
+                         (largest == detail::kInfinity ? ": must be a number"
+                          : largest == kFinite         ? ": must be finite"
+                                                       : ": must be finite and within " + shown(largest)));
     }
   }
   return array;
@@ -131,7 +131,7 @@ py::array_t<double> configuration_batch(const py::handle& value, const std::stri
 }
 
 Eigen::MatrixXd matrix_argument(const py::handle& value, const std::string& name, Eigen::Index columns, bool infinite) {
-  const Array array = rows_of_numbers(value, name, columns, infinite ? kInfinite : kFinite);
+  const Array array = rows_of_numbers(value, name, columns, infinite ? detail::kInfinity : kFinite);
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   return Eigen::Map<const RowMajor>(array.data(), array.shape(0), array.shape(1));
 }

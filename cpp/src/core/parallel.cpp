@@ -23,7 +23,7 @@ struct Loop {
   const std::function<void(std::size_t, int)>& work;
   const Monitor& monitor;
   const char* stage;
-  const CancelToken* interruption;  ///< Of the calling thread.
+  const CancelToken* interruption;  ///< Token of the calling thread.
   std::atomic<std::size_t> next{0};
   std::atomic<std::size_t> done{0};
   std::atomic<bool> failed{false};

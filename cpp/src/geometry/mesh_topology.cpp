@@ -16,7 +16,7 @@ struct HalfEdge {
   bool forward;        // runs from low to high
 };
 
-/// By low, high and triangle: counted into place by low, then each vertex's few are sorted.
+/// Sorts by low, high and triangle: counted into place by low, then each vertex's few are sorted.
 std::vector<HalfEdge> sorted_half_edges(const std::vector<std::array<int, 3>>& triangles) {
   int vertices = 0;
   for (const auto& t : triangles) vertices = std::max({vertices, t[0] + 1, t[1] + 1, t[2] + 1});

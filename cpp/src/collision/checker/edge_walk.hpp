@@ -56,7 +56,7 @@ class EdgeWalk {
   EdgeMotion motion_;
   std::vector<Interval> queue_;     ///< Intervals that wait, and those that did.
   std::vector<Open> open_;          ///< Bodies and varying pairs of the waiting intervals.
-  std::vector<Open> left_, right_;  ///< Of the check at hand.
+  std::vector<Open> left_, right_;  ///< What the check at hand has open.
   std::vector<PairMemory> memory_;  ///< Per varying pair.
 };
 

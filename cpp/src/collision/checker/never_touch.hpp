@@ -23,7 +23,7 @@ class NeverTouch {
     int link = 0;  ///< The joint's child.
     int value = 0;
     double factor = 1;
-    Eigen::Vector3d axis;  ///< In the child's frame.
+    Eigen::Vector3d axis;  ///< Axis in the child's frame.
     bool slides = false;
   };
   /// Where a shape is, in the world: a sphere around it, and a box around the points that its rounding surrounds.
@@ -37,7 +37,7 @@ class NeverTouch {
     std::array<Eigen::Vector3d, 8> corners;
   };
   struct Box {
-    Eigen::VectorXd middle, half;  ///< Of the whole robot's values; half is zero where the value does not matter.
+    Eigen::VectorXd middle, half;  ///< All values of the robot; half is zero where one does not matter.
     double clearance = 0;          ///< At the middle of the box that was halved into this one.
   };
   struct Verdict {

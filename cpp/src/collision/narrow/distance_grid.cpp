@@ -31,7 +31,7 @@ void line_distances(std::vector<float>& line, std::vector<float>& out, std::vect
     float s = -std::numeric_limits<float>::infinity();
     while (k >= 0) {
       const int p = peak[k];
-      // In double precision: squares of long lines have more digits than a float.
+      // Double precision: squares of long lines have more digits than a float.
       s = static_cast<float>((double(line[q]) - line[p]) / (2.0 * (q - p)) + 0.5 * (double(q) + p));
       if (s > border[k]) break;
       --k;

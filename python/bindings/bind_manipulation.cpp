@@ -139,12 +139,9 @@ void bind_manipulation(py::module_& m) {
         const ManipulationOptions read = read_options(manipulation_fields(), options, "plan_manipulation");
         refuse_options_of_others(options, roadmap != nullptr, read.planner);
         SolutionCallback callback(on_solution);
-        ManipulationResult result = LongCall(progress).run([&](const Monitor& monitor) {
-          return plan_manipulation(problem, read, roadmap, monitor, callback.function(monitor),
-                                   checker ? &*checker : nullptr);
+        return callback.run(progress, [&](const Monitor& monitor, const ImprovementCallback& better) {
+          return plan_manipulation(problem, read, roadmap, monitor, better, checker ? &*checker : nullptr);
         });
-        callback.raise();
-        return result;
       },
       "problem"_a, py::kw_only(), "roadmap"_a = py::none(), "checker"_a = py::none(), "padding"_a = py::none(),
       "progress"_a = py::none(), "on_solution"_a = py::none(),

@@ -64,12 +64,10 @@ MotionResult motion(const RobotOrChecker& robot, const OptionalGroup& given_grou
     throw InvalidInput("goal = None: give goal, tool_poses or regions");
   std::vector<Eigen::VectorXd> waypoints;
   if (!via.is_none()) waypoints = configurations_argument(py::reinterpret_borrow<ArrayLike>(via), "via", group.size());
-  MotionResult result = LongCall(progress).run([&](const Monitor& monitor) {
-    read.on_improvement = callback.function(monitor);
+  return callback.run(progress, [&](const Monitor& monitor, const ImprovementCallback& better) {
+    read.on_improvement = better;
     return plan_motion_via(checker, from, waypoints, goals, read, monitor);
   });
-  callback.raise();
-  return result;
 }
 
 void bind_goals(py::module_& m) {

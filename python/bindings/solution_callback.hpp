@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "bindings.hpp"
+#include "long_call.hpp"
 #include "mmgrasp/plan/improvement.hpp"
 #include "options.hpp"
 #include "shown.hpp"
@@ -29,6 +30,21 @@ class SolutionCallback {
     }
   }
 
+  /// Runs `work`, given the monitor and what to tell of better solutions, as a long call. What the callback raised goes
+  /// before how the call, which it stopped, ended.
+  template <typename Work>
+  auto run(const Progress& progress, Work&& work) {
+    try {
+      auto result = LongCall(progress).run([&](const Monitor& monitor) { return work(monitor, function(monitor)); });
+      raise();
+      return result;
+    } catch (const detail::Interrupted&) {
+      raise();
+      throw;
+    }
+  }
+
+ private:
   ImprovementCallback function(const Monitor& monitor) {
     if (callback_.is_none()) return {};
     return [this, stop = monitor.stop](const Improvement& better) mutable {
@@ -46,7 +62,6 @@ class SolutionCallback {
     if (error_) throw std::move(*error_);
   }
 
- private:
   py::object callback_;
   std::optional<py::error_already_set> error_;
 };

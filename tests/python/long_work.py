@@ -211,7 +211,7 @@ def reactions(name: str, folder: Path, moments: tuple[float, ...] = ()) -> list[
         if how == "returned":
             break
     child.kill()
-    child.wait()
+    child.communicate()
     return found
 
 

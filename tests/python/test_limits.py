@@ -86,6 +86,12 @@ ELSEWHERE = {
     "memory": "test_small_processes.py: test_little_memory_is_one_message",
     "checked distances": "test_plan_check.cpp: too-long",
     "speed of a joint": "test_scenario.py: test_joints_that_crawl_are_refused",
+    "coordinates, sizes, distances, poses, joint values": "test_largest_lengths.cpp: TEST(LargestLengths",
+    "pixels of a camera": "test_numbers.py: test_numbers_that_are_none_are_refused_or_end",
+    "`plan_drive_by`": "test_numbers.py: test_numbers_that_are_none_are_refused_or_end",
+    "reach queries": "test_numbers.py: test_numbers_that_are_none_are_refused_or_end",
+    "`plane_iterations`; set cover's `elements`; `track_base`": "test_numbers.py: test_numbers_that_are_none_are_refused_or_end",
+    "`fit_cuboids`": "test_numbers.py: test_numbers_that_are_none_are_refused_or_end",
     "samples of a motion": "test_time_parameterization.cpp: RefusesMoreSamplesThanMemoryHolds",
 }
 """Rows that are tested in another file: its name and the test's, or a word of it."""

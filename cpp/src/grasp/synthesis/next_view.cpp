@@ -60,7 +60,7 @@ DepthCamera with_width(DepthCamera camera, int most) {
 class ImaginedScene {
  public:
   ImaginedScene(const ProbabilisticSdf& map, const detail::MapSurface& surface, std::optional<double> table)
-      : map_(map), table_(table), hull_(*convex_hull(down_to(surface.object, table))) {}
+      : map_(map), table_(table), hull_(*hull_of(down_to(surface.object, table), map.options().voxel)) {}
 
   /// The frame from a pose without noise, and the share of the object's pixels that the map does not know.
   DepthImage seen_from(const Pose& T, const DepthCamera& camera, double& unseen) const {
@@ -100,6 +100,21 @@ class ImaginedScene {
     const std::size_t count = points.size();
     for (std::size_t i = 0; table && i < count; ++i) points.emplace_back(points[i].x(), points[i].y(), *table);
     return points;
+  }
+
+  /// A flat patch of surface is taken for a body two voxels thick.
+  static std::shared_ptr<const TriangleMesh> hull_of(std::vector<Vector3d> points, double voxel) {
+    try {
+      return convex_hull(points);
+    } catch (const InvalidInput&) {
+      const std::size_t count = points.size();
+      for (int axis = 0; axis < 3; ++axis) {
+        for (std::size_t i = 0; i < count; ++i) {
+          for (const double side : {-voxel, voxel}) points.push_back(points[i] + side * Vector3d::Unit(axis));
+        }
+      }
+      return convex_hull(points);
+    }
   }
 
   const ProbabilisticSdf& map_;

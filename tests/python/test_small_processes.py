@@ -15,6 +15,10 @@ ROBOT = str(ASSETS / "robots" / "omni6" / "omni6.urdf")
 ENTRY = "import sys, mmgrasp_command; sys.exit(mmgrasp_command.main())"
 
 
+# The C library and others end the process by themselves, with a line of their own, where they get no memory.
+ENDED_BY_LIBRARY = ("OpenBLAS error", "libgcc_s.so.1 must be installed", "cannot allocate memory for thread-local data")
+
+
 def command(kind: int, limit: int, *arguments: str) -> subprocess.CompletedProcess[str]:
     """Runs the command in a process that has so much of something [bytes]."""
 
@@ -31,7 +35,7 @@ def test_little_memory_is_one_message(megabytes: int) -> None:
     assert "Traceback" not in done.stderr
     said = [line for line in done.stderr.splitlines() if line.strip()]
     assert len(said) == 1 and len(said[0]) < 400, done.stderr
-    if "OpenBLAS error" not in said[0]:  # a library that ends the process by itself, with a line of its own
+    if not said[0].startswith(ENDED_BY_LIBRARY):
         assert said[0].startswith("mmgrasp: ")
         assert done.returncode == 2
 
@@ -39,11 +43,13 @@ def test_little_memory_is_one_message(megabytes: int) -> None:
 @pytest.mark.slow
 def test_little_memory_while_planning_is_one_message(small_path: Path, tmp_path: Path) -> None:
     told = 0
-    for megabytes in (350, 400, 450):
+    for megabytes in (350, 400, 450, 500, 550):
         done = command(
             resource.RLIMIT_AS, megabytes * 1_000_000, "plan", str(small_path), "-o", str(tmp_path / str(megabytes))
         )
         assert "Traceback" not in done.stderr, done.stderr
+        if any(line in done.stderr for line in ENDED_BY_LIBRARY):
+            continue
         assert done.returncode in (0, 2, 4)
         told += done.returncode == 2
         assert done.stderr.count("mmgrasp: ") == (done.returncode == 2), done.stderr

@@ -142,6 +142,8 @@ MappedFile::MappedFile(const std::string& path, std::uint64_t bytes) : size_(byt
     at = MAP_FAILED;
   }
   ::close(file);
+  // Not the file's fault: who replaces damaged files must not take it for one.
+  if (at == MAP_FAILED && failure == ENOMEM) throw Error(path + ": no address space for it: " + std::strerror(failure));
   if (at == MAP_FAILED) throw IoError(path + ": cannot be mapped into memory (" + std::strerror(failure) + ")");
   data_ = static_cast<const unsigned char*>(at);
 }

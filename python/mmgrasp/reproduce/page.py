@@ -10,6 +10,7 @@ from typing import Any
 from .._files import write_file
 from . import ENTRIES
 from .sources import is_stale, sources_hash, stale_results, stored_result
+from .stored_regions import FINDING
 
 FOLDER = "reproduction"
 STALE = "Older than the sources it is made from"
@@ -121,10 +122,18 @@ def _other_seeds(folder: Path, name: str) -> list[str]:
     return lines
 
 
+def _finding(folder: Path) -> list[str]:
+    """What the first chapter comes to: how many of P1's own base positions serve, by the stored table 3.1."""
+    path = folder / "p1-table-3.1.json"
+    notes = stored_result(path)["notes"] if path.is_file() else []
+    return [f"**P1's base positions beside exact ones.** {note}\n" for note in notes if note.startswith(FINDING)]
+
+
 def write_page(out: Path) -> Path:
     """The page of all results stored below the folder, in the order of the table of entries."""
     repository = out.absolute().parent
     sections = [HEAD.format(folder=FOLDER)]
+    sections += _finding(out / FOLDER)
     stale = stale_results(out / FOLDER, repository)
     if stale:
         sections.append(f"{STALE}: {', '.join(stale)}.\n")

@@ -20,6 +20,7 @@ from .._progress import Progress
 from .entry import Context, Result
 from .setup import ChecksAtBase, Row, database, reach_samples
 
+FINDING = "Algorithm 4 is P1's:"
 REDUNDANT_VALUES = (12, 96)  # of the seventh joint; the many where the few give no free configuration
 ROUND = 8  # configurations of a pose that are checked together before the next ones are looked at
 
@@ -71,7 +72,7 @@ class Papers:
             cells, false = sum(ours["cells"] for ours in rows), sum(ours["false"] for ours in rows)
             shares.append(f"{false} of {cells} ({density.name})")
         result.notes.append(
-            "Algorithm 4 is P1's: a base position counts when a configuration stored in each grasp's voxel is free of collisions. Such a "
+            f"{FINDING} a base position counts when a configuration stored in each grasp's voxel is free of collisions. Such a "
             "configuration reaches another pose of the voxel. 'Not exact': the share of its cells at whose middle some object has no "
             f"configuration at all that reaches the grasp and is free, in all rows {' and '.join(shares)}; 'missed': the share of the cells "
             "with such configurations that it does not find. All branches of exact inverse kinematics decide, for "

@@ -35,6 +35,7 @@ from ..scenario.tray_section import WALL
 
 UNCERTAINTY = 0.10  # P1 3.7.1 [m]
 RESOLUTION = 0.05  # P1 3.6 [m]
+WORKSPACE = 300.0  # of the base: rows of 500 trays are 200 m long [m]
 TOP = 0.03  # thickness of the table's top [m]
 OPENING = 0.02  # of the hand at a grasp [m]
 MARKER = LinkShape(Box([0.001, 0.001, 0.001]), _core.pose([0, 0, 0.0005]))
@@ -170,6 +171,7 @@ def robot_setup(torso: float) -> RobotSetup:
     section["group"] = "arm"
     section["home"] = home
     section["joints"] = {**section["joints"], "torso_lift_joint": torso}
+    section["base_limits"] = {**section["base_limits"], "workspace": WORKSPACE}
     return read_setup(choose_sections(document.root, None))
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import fcntl
 import hashlib
 import os
 import shutil
@@ -74,14 +75,48 @@ def temporary_room(folder: Path) -> Iterator[None]:
         tempfile.gettempdir()
     except FileNotFoundError:
         folder.mkdir(parents=True, exist_ok=True)
-        tempfile.tempdir = tempfile.mkdtemp(dir=folder, prefix=DRAFT)
-        try:
-            yield
-        finally:
-            shutil.rmtree(tempfile.tempdir, ignore_errors=True)
-            tempfile.tempdir = None
+        with draft_folder(folder) as draft:
+            tempfile.tempdir = str(draft)
+            try:
+                yield
+            finally:
+                tempfile.tempdir = None
     else:
         yield
+
+
+@contextlib.contextmanager
+def draft_folder(within: Path) -> Iterator[Path]:
+    """A folder to write into, gone after the block. It is locked until then, which tells it from that of a run that was killed.
+
+    Goes also where no more files can be opened: the lock's handle is given back first. Raises OSError.
+    """
+    draft = Path(tempfile.mkdtemp(dir=within, prefix=DRAFT))
+    handle = None
+    try:
+        handle = os.open(draft, os.O_RDONLY | os.O_DIRECTORY)
+        with contextlib.suppress(OSError):  # a file system without locks
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        yield draft
+    finally:
+        if handle is not None:
+            os.close(handle)
+        for folder, _, files in os.walk(draft, topdown=False):  # one handle at a time, unlike shutil.rmtree
+            for name in files:
+                os.unlink(os.path.join(folder, name))
+            os.rmdir(folder)
+
+
+def remove_dead_drafts(within: Path) -> None:
+    """Removes the drafts of runs that were killed: those that nobody holds."""
+    for left in within.glob(f"{DRAFT}*"):
+        with contextlib.suppress(OSError):
+            handle = os.open(left, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW)
+            try:
+                fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)  # raises where somebody writes there
+                shutil.rmtree(left, ignore_errors=True)
+            finally:
+                os.close(handle)
 
 
 def _cannot_write(path: Path, error: Exception) -> IoError:
@@ -125,6 +160,19 @@ def write_file(path: Path, content: str | bytes) -> None:
     finally:
         if os.path.exists(draft):
             os.unlink(draft)
+
+
+def write_result(path: Path, content: str) -> None:
+    """As write_file, for what took long to find: where it cannot be written it is put among the temporary files, and the IoError names the place."""
+    try:
+        write_file(path, content)
+    except IoError as error:
+        try:
+            kept = Path(tempfile.mkdtemp(prefix="mmgrasp.")) / path.name
+            write_file(kept, content)
+        except OSError:
+            raise error from None
+        raise IoError(f"{error}; what was to be written there is in {printable(os.fspath(kept))}") from None
 
 
 def read_text(path: Path, most: int) -> str:

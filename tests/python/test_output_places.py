@@ -17,7 +17,7 @@ from typing import Any
 import pytest
 
 import mmgrasp as mg
-from mmgrasp._files import check_file, check_folder, printable, read_text, write_file
+from mmgrasp._files import check_file, check_folder, printable, read_text, write_file, write_result
 from mmgrasp.cli.output_folder import LIST, OutputFolder
 
 
@@ -161,6 +161,27 @@ def test_two_runs_into_one_folder_lose_neither_plan(tmp_path: Path) -> None:
     assert (tmp_path / "out" / "plan.json").read_text() == "again"
 
 
+def test_a_run_leaves_the_draft_of_another_and_removes_that_of_a_killed_one(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    filling = "import sys, pathlib; from mmgrasp.cli.output_folder import OutputFolder"
+    filling += (
+        "\nwith OutputFolder(pathlib.Path(sys.argv[1])).filled() as draft: print(draft, flush=True); sys.stdin.read()"
+    )
+    command = [sys.executable, "-c", filling, str(out)]
+    with (
+        subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as killed,
+        subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as living,
+    ):
+        drafts = [Path(str(run.stdout and run.stdout.readline().strip())) for run in (killed, living)]
+        killed.kill()
+        killed.wait()
+        assert [draft.is_dir() for draft in drafts] == [True, True]
+        OutputFolder(out).fill(lambda draft: write_file(draft / "plan.json", "ours"))
+        assert [draft.is_dir() for draft in drafts] == [False, True]
+        living.communicate()
+    assert names(out) == {LIST, "plan.json"}
+
+
 @pytest.mark.parametrize("what", ["a file", "below a file", "a link loop"])
 def test_a_place_that_can_no_longer_be_written_does_not_lose_the_plan(tmp_path: Path, what: str) -> None:
     out = tmp_path / "some" / "out"
@@ -173,6 +194,15 @@ def test_a_place_that_can_no_longer_be_written_does_not_lose_the_plan(tmp_path: 
     else:
         out.parent.symlink_to(out.parent)
     assert "cannot be written" in fill_late(folder)
+
+
+def test_a_result_whose_place_went_away_is_kept_elsewhere(tmp_path: Path) -> None:
+    (tmp_path / "out.json").mkdir()
+    with pytest.raises(mg.IoError, match=r"is a folder; what was to be written there is in ") as caught:
+        write_result(tmp_path / "out.json", "found")
+    kept = Path(str(caught.value).rpartition(" is in ")[2])
+    assert kept.name == "out.json" and kept.read_text() == "found"
+    shutil.rmtree(kept.parent)
 
 
 def test_a_disk_that_is_full_does_not_lose_the_plan(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -13,7 +13,7 @@ from rich.table import Table
 
 from .. import _core
 from .._core import InvalidInput, IoError, Outcome
-from .._files import check_file, printable, write_file
+from .._files import check_file, printable, write_result
 from ..documents.reading import Node, read_json
 from ..scan.objects import FORMAT as OBJECTS_FORMAT
 from ..scan.objects import VERSION as OBJECTS_VERSION
@@ -45,7 +45,7 @@ def run_grasp(arguments: argparse.Namespace, console: Console) -> int:
         report("grasps", 1.0)
     content = {"format": FORMAT, "version": VERSION, "gripper": arguments.gripper, "objects": rows}
     if arguments.out is not None:
-        write_file(arguments.out, json.dumps(content, indent=1, allow_nan=False) + "\n")
+        write_result(arguments.out, json.dumps(content, indent=1, allow_nan=False) + "\n")
     if arguments.png is not None:
         from ..viz.grasp_pictures import write_grasp_picture
 

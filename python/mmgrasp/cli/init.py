@@ -8,7 +8,7 @@ import shlex
 from rich.console import Console
 
 from .._core import Error, InvalidInput
-from .._files import check_file, printable, write_file
+from .._files import check_file, printable, write_result
 from ..scenario import load_scenario
 from ..scenario.first import first_scenario
 from .console import Reporter
@@ -34,7 +34,7 @@ def run_init(arguments: argparse.Namespace, console: Console) -> int:
             tool_link=arguments.tool_link,
             progress=report,
         )
-        write_file(arguments.out, made.text)
+        write_result(arguments.out, made.text)
         fault = ""
         try:
             load_scenario(arguments.out, progress=report)

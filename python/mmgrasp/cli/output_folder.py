@@ -12,7 +12,7 @@ from fnmatch import fnmatchcase
 from pathlib import Path, PurePosixPath
 
 from .._core import Error, InvalidInput, IoError
-from .._files import DRAFT, check_folder, printable, read_text, temporary_room, write_file
+from .._files import check_folder, draft_folder, printable, read_text, remove_dead_drafts, temporary_room, write_file
 from .signals import uninterrupted
 
 LIST = "files.json"
@@ -21,24 +21,6 @@ PLAN_FILES = (
     *("topview.png", "regions.png", "stop_*.png", "pick_*.png"),
 )
 _LARGEST_LIST = 100_000_000
-
-
-@contextlib.contextmanager
-def _removed_draft(path: Path) -> Iterator[Path]:
-    """A folder to write into, gone after the block: also where no more files can be opened, for which one handle is kept back."""
-    try:
-        spare = os.open(os.devnull, os.O_RDONLY)
-        draft = Path(tempfile.mkdtemp(dir=path, prefix=DRAFT))
-    except OSError as error:
-        raise IoError(f"{path}: cannot be written: {error.strerror}") from None
-    try:
-        yield draft
-    finally:
-        os.close(spare)
-        for folder, _, files in os.walk(draft, topdown=False):  # one handle at a time, unlike shutil.rmtree
-            for name in files:
-                os.unlink(os.path.join(folder, name))
-            os.rmdir(folder)
 
 
 class OutputFolder:
@@ -102,18 +84,17 @@ class OutputFolder:
             self.path.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise IoError(f"{self.path}: cannot be written: {error.strerror}") from None
-        for left in self.path.glob(f"{DRAFT}*"):  # of a run that was killed
-            shutil.rmtree(left, ignore_errors=True)
-        with _removed_draft(self.path) as draft:
-            try:
+        remove_dead_drafts(self.path)
+        try:
+            with draft_folder(self.path) as draft:
                 with temporary_room(self.path):
                     yield draft
                 with uninterrupted():
                     self._take_over(draft, added, replacing)
-            except OSError as error:
-                if isinstance(error, (IoError, BrokenPipeError)):
-                    raise
-                raise IoError(f"{self.path}: cannot be written: {error.strerror or error}") from None
+        except OSError as error:
+            if isinstance(error, (IoError, BrokenPipeError)):
+                raise
+            raise IoError(f"{self.path}: cannot be written: {error.strerror or error}") from None
 
     def _take_over(self, draft: Path, added: bool, replacing: str) -> None:
         written = {str(p.relative_to(draft).as_posix()) for p in draft.rglob("*") if p.is_file()} | {LIST}

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <thread>
+
 #include "mmgrasp/core/error.hpp"
 #include "support/small_storeroom.hpp"
 
@@ -82,6 +85,28 @@ TEST(Pick, WhatRestsMayLeaveButNotAlongAWall) {
   EXPECT_EQ(beside.failed_at, "close");
   problem.world.move("slat", test::at(0.88 + 0.015 + 0.05 + 1e-5, -0.1, kTableTop + 0.01));
   EXPECT_EQ(plan_object_pick(problem, database()).outcome, Outcome::solved);
+}
+
+/// Whenever the stop comes, at the last grasp or amid the timing of the motions, too: never "not found".
+TEST(Pick, AStopIsToldFromASearchThatFails) {
+  PickProblem problem = pin_on_table();
+  const auto begun = std::chrono::steady_clock::now();
+  const Pick whole = plan_object_pick(problem, database());
+  const auto duration = std::chrono::steady_clock::now() - begun;
+  ASSERT_EQ(whole.outcome, Outcome::solved);
+  problem.grasps = {problem.grasps[whole.grasp]};
+  constexpr int kMoments = 40;
+  for (int i = 0; i < kMoments; ++i) {
+    Monitor monitor;
+    std::thread other([&] {
+      std::this_thread::sleep_for(duration * i / kMoments);
+      monitor.stop.stop();
+    });
+    const Pick pick = plan_object_pick(problem, database(), monitor);
+    other.join();
+    EXPECT_TRUE(pick.outcome == Outcome::solved || pick.outcome == Outcome::stopped) << pick.failed_at;
+    EXPECT_EQ(pick.motions.empty(), pick.outcome == Outcome::stopped);
+  }
 }
 
 TEST(Pick, AnUnreachablePlaceIsNamed) {

@@ -58,11 +58,11 @@ class PickPlanner {
   Pick run() {
     for (int round = 0; round < 2; ++round) {
       for (int g = 0; g < static_cast<int>(problem_.grasps.size()); ++g) {
+        if (motion_tries_ < kMotionTries && try_grasp(g, round)) return pick_;
         if (monitor_.stopped()) {
           pick_.outcome = Outcome::stopped;
           return pick_;
         }
-        if (motion_tries_ < kMotionTries && try_grasp(g, round)) return pick_;
       }
     }
     const auto worst = std::max_element(fallen_.begin(), fallen_.end());
@@ -200,8 +200,8 @@ class PickPlanner {
     line.max_deviation = kLineDeviation;
     const auto add = [&](MotionKind kind, bool holds, const JointPath& path, const TimingOptions& options) {
       CollisionChecker& checker = *checkers[pick_.motions.size()];
-      pick_.motions.push_back(
-          {kind, holds ? width : opening, holds, time_parameterize_free(checker, path, options, kTimedStep)});
+      JointTrajectory trajectory = time_parameterize_free(checker, path, options, kTimedStep, {monitor_.stop, {}});
+      pick_.motions.push_back({kind, holds ? width : opening, holds, std::move(trajectory)});
     };
     add(MotionKind::transit, false, paths.transit, {});
     add(MotionKind::approach, false, paths.approach, line);

@@ -51,21 +51,25 @@ def check_folder(path: Path) -> None:
                 folder.rmdir()
 
 
-def check_file(path: Path) -> None:
-    """Raises IoError unless a file can be written there: see check_folder."""
-    check_folder(_target(path).parent)
+PNG = b"\x89PNG\r\n\x1a\n"  # begins a picture
 
 
-def refuse_own_input(path: Path, source: Path | None) -> None:
-    """Raises IoError where what is to be written would replace the file that it is made from."""
-    try:
-        same = source is not None and os.path.samefile(path, source)
-    except OSError:  # one of them is not there
-        same = False
-    if same:
+def check_file(path: Path, begins: bytes) -> None:
+    """Raises IoError unless a file can be written there: see check_folder. What is there already must begin with `begins`, as what is to
+    be written does: anything else may be what is about to be read, or somebody's, and is not replaced."""
+    target = _target(path)
+    check_folder(target.parent)
+    if target.exists() and read_head(target, len(begins)) not in (b"", begins):
         raise IoError(
-            f"{printable(os.fspath(path))}: is the file that was read, and is not replaced: give another name"
+            f"{printable(os.fspath(path))}: is there already, not as an earlier result, and is not replaced: give another name"
         )
+
+
+def check_new_file(path: Path) -> None:
+    """Raises IoError unless nothing is there and a file can be written there."""
+    if os.path.lexists(path):
+        raise IoError(f"{printable(os.fspath(path))}: is there already and is not replaced: give another name")
+    check_folder(_target(path).parent)
 
 
 @contextlib.contextmanager
@@ -160,6 +164,20 @@ def write_file(path: Path, content: str | bytes) -> None:
     finally:
         if os.path.exists(draft):
             os.unlink(draft)
+
+
+def write_files(folder: Path, contents: dict[str, str], *patterns: str) -> list[Path]:
+    """Writes files of one result into a folder; returns their paths. Raises IoError, and writes nothing, where the folder holds others of
+    the patterns: those of an older result could be taken for this one's."""
+    older = sorted(p.name for pattern in patterns for p in folder.glob(pattern) if p.name not in contents)
+    if older:
+        names = ", ".join(older[:3]) + (f" and {len(older) - 3} more" if len(older) > 3 else "")
+        raise IoError(
+            f"{printable(os.fspath(folder))}: holds {printable(names)} of another result: remove them or choose another folder"
+        )
+    for name, content in contents.items():
+        write_file(folder / name, content)
+    return [folder / name for name in contents]
 
 
 def write_result(path: Path, content: str) -> None:

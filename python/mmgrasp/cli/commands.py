@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Console
 
 from .._core import Error, InvalidInput, Outcome
-from .._files import check_file, check_folder, printable, refuse_own_input, temporary_room, write_file
+from .._files import PNG, check_file, check_new_file, printable, temporary_room, write_file
 from ..documents.reading import Document
 from ..part_supply import (
     ScenarioPlan,
@@ -129,9 +129,7 @@ def run_verify(arguments: argparse.Namespace, console: Console) -> int:
 def run_check(arguments: argparse.Namespace, console: Console) -> int:
     """`mmgrasp check`: looks at a robot; the exit code."""
     if arguments.write_srdf is not None:
-        check_file(arguments.write_srdf)
-        for source in (arguments.urdf, arguments.srdf):
-            refuse_own_input(arguments.write_srdf, source)
+        check_new_file(arguments.write_srdf)
     with Reporter(console) as report:
         found = check_robot(
             arguments.urdf,
@@ -156,8 +154,7 @@ def run_view(arguments: argparse.Namespace, console: Console) -> int:
     if content["outcome"] == "solved":
         plan_to_check(root)
     if arguments.png is not None:
-        check_file(arguments.png)
-        refuse_own_input(arguments.png, arguments.plan)
+        check_file(arguments.png, PNG)
         from ..viz.viewer import write_png
 
         with temporary_room(Path(os.path.realpath(arguments.png)).parent):
@@ -201,7 +198,7 @@ def run_bench(arguments: argparse.Namespace, console: Console) -> int:
 def run_reproduce(arguments: argparse.Namespace, console: Console) -> int:
     """`mmgrasp reproduce`: papers' tables beside ours; the exit code."""
     from .. import reproduce as again
-    from ..reproduce.page import markdown, store
+    from ..reproduce.page import check_places, markdown, store
 
     if not arguments.name:
         for entry in again.ENTRIES.values():
@@ -209,7 +206,8 @@ def run_reproduce(arguments: argparse.Namespace, console: Console) -> int:
         return DONE
     names = [e for name in arguments.name for e in (again.ENTRIES if name == "all" else [again.entry(name).name])]
     if arguments.out is not None:
-        check_folder(arguments.out)
+        for name in names:
+            check_places(name, arguments.seed, arguments.out)
     results = []
     room = contextlib.nullcontext() if arguments.out is None else temporary_room(arguments.out)
     with Reporter(console) as report, room, _sweep(arguments) as sweep:

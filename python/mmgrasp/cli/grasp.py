@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,7 @@ from rich.table import Table
 
 from .. import _core
 from .._core import InvalidInput, IoError, Outcome
-from .._files import check_file, printable, write_result
+from .._files import PNG, check_file, printable, write_result
 from ..documents.reading import Node, read_json
 from ..scan.objects import FORMAT as OBJECTS_FORMAT
 from ..scan.objects import VERSION as OBJECTS_VERSION
@@ -30,9 +31,12 @@ _SHARES = ("angle", "placement", "centring", "certainty")
 
 def run_grasp(arguments: argparse.Namespace, console: Console) -> int:
     """`mmgrasp grasp`: ranked grasps of the objects in a map; the exit code."""
-    for path in (arguments.out, arguments.png):
-        if path is not None:
-            check_file(path)
+    if arguments.out is not None:
+        check_file(arguments.out, _text({"format": FORMAT})[:-3].encode())
+    if arguments.png is not None:
+        check_file(arguments.png, PNG)
+        if arguments.out is not None and os.path.realpath(arguments.out) == os.path.realpath(arguments.png):
+            raise InvalidInput(f"--png {printable(str(arguments.png))}: is the file of -o, too: give another name")
     hand = read_gripper(arguments.gripper)
     objects, plane = _read_objects(arguments.map)
     chosen = _chosen(objects, arguments.object, arguments.map)
@@ -45,7 +49,7 @@ def run_grasp(arguments: argparse.Namespace, console: Console) -> int:
         report("grasps", 1.0)
     content = {"format": FORMAT, "version": VERSION, "gripper": arguments.gripper, "objects": rows}
     if arguments.out is not None:
-        write_result(arguments.out, json.dumps(content, indent=1, allow_nan=False) + "\n")
+        write_result(arguments.out, _text(content))
     if arguments.png is not None:
         from ..viz.grasp_pictures import write_grasp_picture
 
@@ -57,6 +61,10 @@ def run_grasp(arguments: argparse.Namespace, console: Console) -> int:
     else:
         _print(rows, {"grasps": arguments.out, "picture": arguments.png}, console)
     return DONE if any(row["grasps"] for row in rows) else NOT_FOUND
+
+
+def _text(content: dict[str, Any]) -> str:
+    return json.dumps(content, indent=1, allow_nan=False) + "\n"
 
 
 def _read_objects(folder: Path) -> tuple[list[dict[str, Any]], dict[str, Any]]:

@@ -7,8 +7,8 @@ import shlex
 
 from rich.console import Console
 
-from .._core import Error, InvalidInput
-from .._files import check_file, printable, write_result
+from .._core import Error
+from .._files import check_new_file, printable, write_result
 from ..scenario import load_scenario
 from ..scenario.first import first_scenario
 from .console import Reporter
@@ -17,9 +17,7 @@ from .exit_codes import DONE, FAULTY
 
 def run_init(arguments: argparse.Namespace, console: Console) -> int:
     """The command; returns its exit code: 1 where the scenario that was written cannot be planned yet."""
-    if arguments.out.exists() or arguments.out.is_symlink():
-        raise InvalidInput(f"{printable(str(arguments.out))}: is there already and is not replaced: another name by -o")
-    check_file(arguments.out)
+    check_new_file(arguments.out)
     with Reporter(console) as report:
         made = first_scenario(
             arguments.urdf,

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .. import _core
 from .._core import InvalidInput, Outcome
-from .._files import write_file
+from .._files import write_files
 from .._progress import Progress
 from ..documents.reading import read_json
 from ..scenario import Scenario, load_scenario
@@ -95,16 +95,14 @@ class Arrival:
 
     def save(self, folder: str | os.PathLike[str]) -> list[Path]:
         """Writes arrival.json and, solved, one CSV for each arm motion in `trajectories`; returns the paths."""
-        written = [Path(folder) / "arrival.json"]
-        write_file(written[0], json.dumps(self.to_dict(), allow_nan=False) + "\n")
-        if self.outcome != Outcome.solved:
-            return written
-        for i, pick in enumerate(self.picks):
+        motions = {}
+        for i, pick in enumerate(self.picks if self.outcome == Outcome.solved else []):
             for j, motion in enumerate(pick.motions):
                 name = f"pick_{i:02d}_{file_name(self._part(pick).name)}_{j}_{motion.kind}.csv"
-                written.append(Path(folder) / "trajectories" / name)
-                write_file(written[-1], motion.trajectory.to_csv(base_pose=self.pose))
-        return written
+                motions[name] = motion.trajectory.to_csv(base_pose=self.pose)
+        written = write_files(Path(folder) / "trajectories", motions, "pick_*.csv")
+        answer = json.dumps(self.to_dict(), allow_nan=False) + "\n"
+        return [*write_files(Path(folder), {"arrival.json": answer}), *written]
 
 
 def _fallen(rejections: _core.Rejections) -> str:

@@ -18,7 +18,7 @@ import numpy as np
 
 from .. import _core
 from .._core import InvalidInput, JointGroup, Outcome, Pick, World
-from .._files import write_file
+from .._files import write_files
 from .._options import DriveByOptions
 from .._progress import Progress
 from .planning import ScenarioPlan, file_name
@@ -151,17 +151,14 @@ class DriveByPlan:
 
     def save(self, folder: str | os.PathLike[str]) -> list[Path]:
         """drive_by.json, plan.json, a CSV of the whole round, and one for each motion in passing (x, y, theta first; then wheel speeds, tasks and what is held)."""
-        written = [Path(folder) / "drive_by.json", Path(folder) / "plan.json"]
-        for path, content in zip(written, (self.to_dict(), self.plan_to_dict()), strict=True):
-            write_file(path, json.dumps(content, allow_nan=False) + "\n")
-        written.append(Path(folder) / "trajectories" / "round.csv")
-        write_file(written[-1], self.motion().to_csv())
+        motions = {"round.csv": self.motion().to_csv()}
         for pick in self.picks:
             if pick.used:
-                name = file_name(pick.part)
-                written.append(Path(folder) / "trajectories" / f"drive_by_{pick.leg:02d}_{name}.csv")
-                write_file(written[-1], pick.result.to_csv(between=BETWEEN))
-        return written
+                motions[f"drive_by_{pick.leg:02d}_{file_name(pick.part)}.csv"] = pick.result.to_csv(between=BETWEEN)
+        written = write_files(Path(folder) / "trajectories", motions, "drive_by_*.csv")
+        answers = {"drive_by.json": self.to_dict(), "plan.json": self.plan_to_dict()}
+        texts = {name: json.dumps(content, allow_nan=False) + "\n" for name, content in answers.items()}
+        return [*write_files(Path(folder), texts), *written]
 
 
 def plan_drive_by_picks(

@@ -12,7 +12,7 @@ from typing import Any, overload
 
 from .. import _core
 from .._core import InvalidInput, Outcome, PartSupplyPlan, PartSupplyProblem, ReachDatabase, RobotMotion
-from .._files import write_file
+from .._files import write_file, write_files
 from .._progress import Progress
 from ..scenario import Scenario, load_scenario
 from .plan_writer import plan_to_dict, scenario_to_dict
@@ -88,22 +88,19 @@ class ScenarioPlan:
 
     def save_trajectories(self, folder: str | os.PathLike[str]) -> list[Path]:
         """One CSV for the whole round, and one per arm motion and per leg of the route, named in the order they are carried out."""
-        written = []
+        contents = {}
         if self.outcome == Outcome.solved:
-            written.append(Path(folder) / "round.csv")
-            write_file(written[0], self.motion().to_csv())
+            contents["round.csv"] = self.motion().to_csv()
         for i, pick in enumerate(self.picks):
             tray = self.scenario.trays[pick.tray].tray
             part = file_name(tray.parts[pick.part].name)
             for j, motion in enumerate(pick.motions):
-                path = Path(folder) / f"pick_{i:02d}_{part}_{j}_{motion.kind}.csv"
-                write_file(path, motion.trajectory.to_csv(base_pose=self.stops[pick.stop].pose))
-                written.append(path)
+                csv = motion.trajectory.to_csv(base_pose=self.stops[pick.stop].pose)
+                contents[f"pick_{i:02d}_{part}_{j}_{motion.kind}.csv"] = csv
         robot, arm, home = self.scenario.setup.robot, self.scenario.setup.arm, self.scenario.setup.home
         for i, leg in enumerate(self.route):
-            written.append(Path(folder) / f"drive_{i:02d}.csv")
-            write_file(written[-1], RobotMotion.of_drive(leg, robot, arm, home).to_csv())
-        return written
+            contents[f"drive_{i:02d}.csv"] = RobotMotion.of_drive(leg, robot, arm, home).to_csv()
+        return write_files(Path(folder), contents, "pick_*.csv", "drive_*.csv", "round.csv")
 
     def __repr__(self) -> str:
         if self.outcome != Outcome.solved:

@@ -7,14 +7,14 @@ import json
 from pathlib import Path
 from typing import Any
 
-from .._files import write_file
+from .._files import PNG, check_file, write_file
 from . import ENTRIES
 from .sources import is_stale, sources_hash, stale_results, stored_result
 from .stored_regions import FINDING
 
 FOLDER = "reproduction"
 STALE = "Older than the sources it is made from"
-
+PAGE = "reproduction.md"
 HEAD = """# What the papers print, and what mmgrasp computes
 
 Written by `mmgrasp reproduce` (or `./dev reproduce`) from the results in `{folder}/*.json`; do not edit. Each table has the paper's value
@@ -94,20 +94,28 @@ def _one_line_a_key(result: dict[str, Any]) -> str:
     return "{\n" + ",\n".join([*others, f'"rows": [\n  {rows}\n]']) + "\n}\n"
 
 
+def check_places(name: str, seed: int, out: Path) -> None:
+    """Raises IoError where `store` would replace what is no page or result of ours, or cannot write."""
+    check_file(out / PAGE, HEAD.partition("\n")[0].encode())
+    check_file(_stored(name, seed, out), _one_line_a_key({"name": name, "rows": []}).partition(",")[0].encode())
+    check_file(out / FOLDER / f"{name}.png", PNG)
+
+
+def _stored(name: str, seed: int, out: Path) -> Path:
+    return out / FOLDER / (f"{name}.json" if seed == 1 else f"{name}-seed-{seed}.json")
+
+
 def store(result: dict[str, Any], out: Path) -> Path:
     """Writes a result's JSON and picture below the folder and the page of all results stored there; returns the page.
 
     Seed 1 is the one shown. Those of other seeds are kept beside it, and the page says which statements hold for them.
     """
-    folder = out / FOLDER
     made_from = sources_hash(result["name"], out.absolute().parent)
     if made_from is not None:
         result = {**result, "sources": made_from}
+    write_file(_stored(result["name"], result["seed"], out), _one_line_a_key(result))
     if result["seed"] == 1:
-        write_file(folder / f"{result['name']}.json", _one_line_a_key(result))
-        write_picture(result, folder / f"{result['name']}.png")
-    else:
-        write_file(folder / f"{result['name']}-seed-{result['seed']}.json", _one_line_a_key(result))
+        write_picture(result, out / FOLDER / f"{result['name']}.png")
     return write_page(out)
 
 
@@ -149,6 +157,6 @@ def write_page(out: Path) -> Path:
             section = f"{head}\n\n*{STALE}.*\n{rest}"
         sections.append(section)
         sections += _other_seeds(out / FOLDER, name)
-    page = out / "reproduction.md"
+    page = out / PAGE
     write_file(page, "\n".join(sections))
     return page

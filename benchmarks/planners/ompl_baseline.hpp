@@ -43,14 +43,15 @@ class OmplBaseline {
     std::vector<double> ends;
     for (const Eigen::VectorXd& goal : goals) ends.insert(ends.end(), goal.begin(), goal.end());
     const Eigen::VectorXd lower = group_.sample_lower(), upper = group_.sample_upper();
-    const std::vector<unsigned char> wraps(group_.wraps().begin(), group_.wraps().end());
+    std::vector<double> turns;
+    for (const bool wraps : group_.wraps()) turns.push_back(wraps ? 2 * M_PI : 0);
     answer_ = {};
     MmgraspOmplProblem problem{};
     problem.planner = "ompl_rrt_connect";
     problem.size = group_.size();
     problem.lower = lower.data();
     problem.upper = upper.data();
-    problem.wraps = wraps.data();
+    problem.turns = turns.data();
     problem.start = start.data();
     problem.goal_count = static_cast<int>(goals.size());
     problem.goals = ends.data();

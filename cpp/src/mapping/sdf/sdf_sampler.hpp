@@ -83,16 +83,14 @@ class SdfSampler {
   int block_at(const Eigen::Vector3d& point) {
     const Eigen::Vector3d g = point * scale_;
     if (!(g.cwiseAbs().maxCoeff() < 8.0 * kMostBlocks)) return -1;
-    return find({static_cast<int>(std::floor(g.x())) >> 3, static_cast<int>(std::floor(g.y())) >> 3,
-                 static_cast<int>(std::floor(g.z())) >> 3});
+    return find({floor_of(g.x()) >> 3, floor_of(g.y()) >> 3, floor_of(g.z()) >> 3});
   }
 
   /// Fetches what at() will read of this point.
   void prefetch(const Eigen::Vector3d& point) {
     const int block = block_at(point);
     if (block < 0) return;
-    const int y = static_cast<int>(std::floor(point.y() * scale_)),
-              z = static_cast<int>(std::floor(point.z() * scale_));
+    const int y = floor_of(point.y() * scale_), z = floor_of(point.z() * scale_);
     for (const auto& layer : grid_.layers) {
       if (!layer[block]) continue;
       const int row = ((z & 7) << 3) + (y & 7);
@@ -192,9 +190,8 @@ class SdfSampler {
   /// The cell of a place in voxels, and where in it that is.
   static void split(const Eigen::Vector3d& place, int* cell, float* t) {
     for (int k = 0; k < 3; ++k) {
-      const double floor = std::floor(place[k]);
-      cell[k] = static_cast<int>(floor);
-      t[k] = static_cast<float>(place[k] - floor);
+      cell[k] = floor_of(place[k]);
+      t[k] = static_cast<float>(place[k] - cell[k]);
     }
   }
 
@@ -286,7 +283,10 @@ class SdfSampler {
     split(g, cell, t);
     const int first[3] = {cell[0] - 1, cell[1] - 1, cell[2] - 1};
     around_stencil_.enter({first[0] >> 3, first[1] >> 3, first[2] >> 3});
-    float mean[4][4][4];  // [z][y][x] from one voxel before the cell to one behind it, without edges and corners
+    // Central differences of interpolated values are interpolated differences. The voxels from one before the cell to
+    // one behind it, without edges and corners, are added up with the weights of the two other axes.
+    float along[3][4] = {};
+    const float weight[3][4] = {{0, 1 - t[0], t[0], 0}, {0, 1 - t[1], t[1], 0}, {0, 1 - t[2], t[2], 0}};
     for (int z = 0; z < 4; ++z) {
       for (int y = 0; y < 4; ++y) {
         const int outside = (z == 0 || z == 3) + (y == 0 || y == 3);
@@ -298,19 +298,15 @@ class SdfSampler {
           const VoxelBlock* const voxels = around_stencil_.voxels(beyond | u >> 3);
           if (!voxels || !(voxels->rows[row][kBlockSide + (u & 7)] > 0)) return false;
           if (voxels->looked_through && voxels->carved(row << 3 | (u & 7))) return false;
-          mean[z][y][x] = voxels->rows[row][u & 7];
+          const float mean = voxels->rows[row][u & 7];
+          along[0][x] += weight[1][y] * weight[2][z] * mean;
+          along[1][y] += weight[0][x] * weight[2][z] * mean;
+          along[2][z] += weight[0][x] * weight[1][y] * mean;
         }
       }
     }
     for (int k = 0; k < 3; ++k) {
-      float end[2];
-      for (int way = 0; way < 2; ++way) {
-        float corner[8];
-        const int shift[3] = {k == 0 ? 2 * way : 1, k == 1 ? 2 * way : 1, k == 2 ? 2 * way : 1};
-        for (int c = 0; c < 8; ++c) corner[c] = mean[shift[2] + (c >> 2)][shift[1] + (c >> 1 & 1)][shift[0] + (c & 1)];
-        end[way] = trilinear(corner, t);
-      }
-      out[k] = 0.5 * (static_cast<double>(end[1]) - end[0]);
+      out[k] = 0.5 * ((1 - t[k]) * (along[k][2] - along[k][0]) + t[k] * (along[k][3] - along[k][1]));
     }
     return true;
   }

@@ -76,9 +76,8 @@ SdfValues ProbabilisticSdf::query(const Eigen::Matrix3Xd& points, int threads) c
   out.mean.resize(points.cols());
   out.sigma.resize(points.cols());
   out.known.resize(points.cols());
-  by_pieces(points.cols(), kFewestPoints, kMostPoints, threads, [&](Eigen::Index first, Eigen::Index last) {
-    detail::query_points(*grid_, points, first, last, out);
-  });
+  by_pieces(points.cols(), kFewestPoints, kMostPoints, threads,
+            [&](Eigen::Index first, Eigen::Index last) { detail::query_points(*grid_, points, first, last, out); });
   return out;
 }
 

@@ -10,41 +10,70 @@ namespace {
 using Eigen::Vector3d;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-/// Walks the cells of a lattice along a ray, from t = begin to t = end, through the cells from `first` to `last` on
-/// each axis: a start on a wall belongs to the cell on their side of it, and so does what rounding leaves at the end.
+/// A ray with a unit direction, and 1 / direction; where that is not finite it leaves no cell along the axis.
+struct Way {
+  const Vector3d &origin, &direction, &inverse;
+};
+
+/// Walks cells along a ray from t = begin to t = end, `count` (a power of two) a side from `first` on. A start on a
+/// wall belongs to the cell on the side of it that rounding says, and so does what rounding leaves at the end.
 class CellWalk {
  public:
-  CellWalk(const Vector3d& origin, const Vector3d& direction, const Vector3d& inverse, double side, double begin,
-           double end, const BlockKey& first, const BlockKey& last)
-      : t_(begin), end_(end) {
+  CellWalk(const Way& way, double side, double begin, double end, const BlockKey& first, int count)
+      : t_(begin), end_(end), outside_(~(static_cast<std::uint64_t>(count - 1) * kUnits)) {
     const double per_side = 1 / side;
-    const int low[3] = {first.x, first.y, first.z}, high[3] = {last.x, last.y, last.z};
+    const int low[3] = {first.x, first.y, first.z};
     for (int k = 0; k < 3; ++k) {
-      const bool up = direction[k] > 0, moves = std::abs(inverse[k]) < kInfinity;
-      cell_[k] = std::clamp(floor_of((origin[k] + begin * direction[k]) * per_side), low[k], high[k]);
-      step_[k] = up ? 1 : -1;
-      past_[k] = up ? high[k] + 1 : low[k] - 1;
-      delta_[k] = side * std::abs(inverse[k]);
-      next_[k] = moves ? std::max(begin, ((cell_[k] + up) * side - origin[k]) * inverse[k]) : kInfinity;
+      const bool up = way.direction[k] > 0, moves = std::abs(way.inverse[k]) < kInfinity;
+      const int at = floor_of((way.origin[k] + begin * way.direction[k]) * per_side);
+      const int cell = std::clamp(at, low[k], low[k] + count - 1);
+      place_ += static_cast<std::uint64_t>(cell - low[k]) << kShift[k];
+      step_[k] = (up ? 1 : ~std::uint64_t{0}) << kShift[k];
+      delta_[k] = side * std::abs(way.inverse[k]);
+      next_[k] = moves ? std::max(begin, ((cell + up) * side - way.origin[k]) * way.inverse[k]) : kInfinity;
     }
   }
-  bool done() const { return t_ >= end_ || left_; }
-  BlockKey cell() const { return {cell_[0], cell_[1], cell_[2]}; }
+  bool done() const { return t_ >= end_ || (place_ & outside_) != 0; }
+  /// The cell from `first` on, packed as BlockKey is, without its offset.
+  std::uint64_t place() const { return place_; }
   double begin() const { return t_; }
   double end() const { return std::min(std::min(next_[0], next_[1]), std::min(next_[2], end_)); }
   void advance() {
-    const int k = next_[0] < next_[1] ? (next_[0] < next_[2] ? 0 : 2) : (next_[1] < next_[2] ? 1 : 2);
-    t_ = next_[k];
-    next_[k] += delta_[k];
-    cell_[k] += step_[k];
-    left_ = cell_[k] == past_[k];
+    if (next_[0] < next_[1]) {
+      next_[0] < next_[2] ? step(0) : step(2);
+    } else {
+      next_[1] < next_[2] ? step(1) : step(2);
+    }
   }
 
  private:
+  static constexpr int kShift[3] = {42, 21, 0};
+  static constexpr std::uint64_t kUnits = std::uint64_t{1} << 42 | std::uint64_t{1} << 21 | 1;
+  void step(int k) {
+    t_ = next_[k];
+    next_[k] += delta_[k];
+    place_ += step_[k];
+  }
+
   double t_, end_, next_[3], delta_[3];
-  int cell_[3], step_[3], past_[3];
-  bool left_ = false;
+  std::uint64_t place_ = 0, step_[3];
+  const std::uint64_t outside_;  // bits that are set beyond the last cell, or before the first
 };
+
+constexpr int kWide = 1 << 20;
+const BlockKey kLowest{-kWide, -kWide, -kWide};  // so that a place is a packed key
+
+/// Where in an 8 x 8 x 8 lattice.
+int z_of(std::uint64_t place) {
+  return static_cast<int>(place & 7);
+}
+int xy_of(std::uint64_t place) {
+  return static_cast<int>(place >> 21 & 7) << 3 | static_cast<int>(place >> 42 & 7);
+}
+BlockKey cell_of(const BlockKey& first, std::uint64_t place) {
+  return {first.x + static_cast<int>(place >> 42), first.y + static_cast<int>(place >> 21 & 7),
+          first.z + static_cast<int>(place & 7)};
+}
 
 /// The map between the eight corners of one cell along a ray: a cubic polynomial of s, from 0 where the ray is at
 /// `place`, voxels from the lowest corner, in steps of `slope`.
@@ -96,18 +125,12 @@ void clip(const Eigen::AlignedBox3d& box, const Vector3d& origin, const Vector3d
   }
 }
 
-bool flagged(const std::atomic<std::uint64_t>* words, const BlockKey& cell) {
-  const std::uint64_t word = words[cell.z & 7].load(std::memory_order_relaxed);
-  return word >> (8 * (cell.y & 7) + (cell.x & 7)) & 1;
+bool flagged(const std::atomic<std::uint64_t>* words, std::uint64_t place) {
+  return words[z_of(place)].load(std::memory_order_relaxed) >> xy_of(place) & 1;
 }
 
 BlockKey first_of(const BlockKey& outer) {
   return {kBlockSide * outer.x, kBlockSide * outer.y, kBlockSide * outer.z};
-}
-
-BlockKey last_of(const BlockKey& outer) {
-  const BlockKey first = first_of(outer);
-  return {first.x + kBlockSide - 1, first.y + kBlockSide - 1, first.z + kBlockSide - 1};
 }
 
 }  // namespace
@@ -139,24 +162,22 @@ double RayMarch::crossing(BlockOnRay in) const {
 }
 
 BlockOnRay RayMarch::next_block(double begin) const {
+  const Way way{origin_, direction_, inverse_};
   const double voxel = grid_.options.voxel, block = kBlockSide * voxel;
-  const BlockKey lowest{-kMostBlocks, -kMostBlocks, -kMostBlocks}, highest{kMostBlocks, kMostBlocks, kMostBlocks};
-  for (CellWalk wide(origin_, direction_, inverse_, kBlockSide * block, begin, end_, lowest, highest); !wide.done();
-       wide.advance()) {
-    const BlockKey outer = wide.cell();
-    const int at = grid_.mask_table.find(outer.packed());
+  for (CellWalk wide(way, kBlockSide * block, begin, end_, kLowest, 2 * kWide); !wide.done(); wide.advance()) {
+    const int at = grid_.mask_table.find(wide.place());
     if (at < 0) continue;
     const BlockMask& mask = grid_.masks[at];
-    for (CellWalk walk(origin_, direction_, inverse_, block, wide.begin(), wide.end(), first_of(outer), last_of(outer));
-         !walk.done(); walk.advance()) {
-      const BlockKey key = walk.cell();
-      if (!(mask[key.z & 7] >> (8 * (key.y & 7) + (key.x & 7)) & 1)) continue;
+    const BlockKey first = first_of(BlockKey::unpack(wide.place()));
+    for (CellWalk walk(way, block, wide.begin(), wide.end(), first, kBlockSide); !walk.done(); walk.advance()) {
+      if (!(mask[z_of(walk.place())] >> xy_of(walk.place()) & 1)) continue;
+      const BlockKey key = cell_of(first, walk.place());
       const int found = grid_.find(key);
       const std::atomic<std::uint64_t>* words = crossing_.of(found, key, sampler_);
       if (!words) continue;
-      for (CellWalk cells(origin_, direction_, inverse_, voxel, walk.begin(), walk.end(), first_of(key), last_of(key));
-           !cells.done(); cells.advance()) {
-        if (flagged(words, cells.cell())) return {found, key, cells.begin(), walk.end()};
+      CellWalk cells(way, voxel, walk.begin(), walk.end(), first_of(key), kBlockSide);
+      for (; !cells.done(); cells.advance()) {
+        if (flagged(words, cells.place())) return {found, key, cells.begin(), walk.end()};
       }
     }
   }
@@ -164,12 +185,13 @@ BlockOnRay RayMarch::next_block(double begin) const {
 }
 
 double RayMarch::crossing_in(const BlockOnRay& in) const {
+  const Way way{origin_, direction_, inverse_};
   const std::atomic<std::uint64_t>* words = crossing_.of(in.block, in.key, sampler_);
-  for (CellWalk cells(origin_, direction_, inverse_, grid_.options.voxel, in.begin, in.end, first_of(in.key),
-                      last_of(in.key));
-       !cells.done(); cells.advance()) {
-    if (!flagged(words, cells.cell())) continue;
-    const double t = crossing_of(cells.cell(), cells.begin(), cells.end());
+  const BlockKey first = first_of(in.key);
+  CellWalk cells(way, grid_.options.voxel, in.begin, in.end, first, kBlockSide);
+  for (; !cells.done(); cells.advance()) {
+    if (!flagged(words, cells.place())) continue;
+    const double t = crossing_of(cell_of(first, cells.place()), cells.begin(), cells.end());
     if (!std::isnan(t)) return t;
   }
   return kNone;

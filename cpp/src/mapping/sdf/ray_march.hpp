@@ -13,8 +13,8 @@ struct BlockOnRay {
   double begin = 0, end = 0;  ///< From the ray's origin [m].
 };
 
-/// Where a ray with a unit direction crosses the zero level from the front. Finding blocks reads flags alone, which fit into the cache; so
-/// rays can be sorted by block before voxels are read. Not for several threads at once.
+/// Where a ray with a unit direction crosses the zero level from the front. Finding blocks reads flags alone, which fit
+/// into the cache; so rays can be sorted by block before voxels are read. Not for several threads at once.
 class RayMarch {
  public:
   RayMarch(const SdfGrid& grid, CrossingCells& crossing, SdfSampler& sampler, const Eigen::Vector3d& origin,

@@ -89,6 +89,43 @@ def test_answers_do_not_depend_on_threads(sdf: mg.ProbabilisticSdf) -> None:
         np.testing.assert_array_equal(getattr(one, name), getattr(more, name))
 
 
+def test_a_ray_has_the_same_answer_alone_and_among_others(sdf: mg.ProbabilisticSdf) -> None:
+    """Rays are sorted by what they meet; where they stand in a batch must not show."""
+    rng = np.random.default_rng(8)
+    origins, points = rng.uniform(-0.5, 0.5, (500, 3)), sdf.points()[0]
+    directions = points[rng.integers(len(points), size=500)] - origins
+    many = sdf.cast_rays(origins, directions)
+    assert 100 < many.hit.sum() < 500
+    shuffled = rng.permutation(500)
+    others = sdf.cast_rays(origins[shuffled], directions[shuffled])
+    for name in ("hit", "distance", "point", "normal", "sigma"):
+        np.testing.assert_array_equal(getattr(others, name), getattr(many, name)[shuffled])
+        alone = [getattr(sdf.cast_rays(origins[i : i + 1], directions[i : i + 1]), name) for i in range(40)]
+        np.testing.assert_array_equal(np.concatenate(alone), getattr(many, name)[:40])
+
+
+def test_normals_are_central_differences_of_the_mean(sdf: mg.ProbabilisticSdf) -> None:
+    rng = np.random.default_rng(9)
+    origins = np.column_stack([rng.uniform(-0.2, 0.2, (2000, 2)), np.full(2000, 0.4)])
+    hits = sdf.cast_rays(origins, np.tile([0.05, -0.03, -1.0], (2000, 1)))
+    steps = VOXEL * np.stack([np.eye(3), -np.eye(3)])
+    mean, _, known = sdf.query((hits.point[hits.hit][:, None, None] + steps).reshape(-1, 3))
+    inside = known.reshape(-1, 6).all(axis=1)
+    ahead, behind = mean.reshape(-1, 2, 3)[inside].transpose(1, 0, 2)
+    expected = (ahead - behind) / np.linalg.norm(ahead - behind, axis=1)[:, None]
+    assert inside.sum() > 1000
+    np.testing.assert_allclose(hits.normal[hits.hit][inside], expected, atol=2e-4)
+
+
+@pytest.mark.parametrize("length", [1e-300, 1e-120, 3.0, 1e5])
+def test_the_length_of_a_direction_is_the_unit_of_the_distance(sdf: mg.ProbabilisticSdf, length: float) -> None:
+    origin, unit = np.array([[0.01, 0.02, 0.5]]), np.array([[0.0, 0.28, -0.96]])
+    usual, scaled = sdf.cast_rays(origin, unit), sdf.cast_rays(origin, length * unit)
+    assert usual.hit[0] and scaled.hit[0]
+    np.testing.assert_allclose(scaled.point, usual.point, atol=1e-9)
+    np.testing.assert_allclose(scaled.distance, usual.distance / length, rtol=1e-9)
+
+
 def _saved(sdf: mg.ProbabilisticSdf, count: int) -> list[Any]:
     import tempfile
     from pathlib import Path

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mapping/sdf/cast_rays.hpp"
+#include "mapping/sdf/crossing_cells.hpp"
 #include "mapping/sdf/extract_mesh.hpp"
 #include "mapping/sdf/integrate.hpp"
 #include "mapping/sdf/obstacle_cells.hpp"
 #include "mapping/sdf/query_points.hpp"
-#include "mapping/sdf/ray_march.hpp"
 #include "mapping/sdf/sdf_field.hpp"
 #include "mapping/sdf/sdf_file.hpp"
-#include "mapping/sdf/sdf_sampler.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/limits.hpp"
@@ -19,12 +19,15 @@
 namespace mmgrasp {
 namespace {
 
-constexpr Eigen::Index kFewestPoints = 4096, kMostPoints = 1 << 20, kRaysOfItem = 1024;  // of a work item
+// Of a work item.
+constexpr Eigen::Index kFewestPoints = 4096, kMostPoints = 1 << 20, kFewestRays = 1024, kMostRays = 1 << 16;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// Calls work(first, last) for pieces of [0, count).
+/// Calls work(first, last) for pieces of [0, count) of nearly the same size, as many for each thread.
 template <typename Work>
-void by_pieces(Eigen::Index count, Eigen::Index piece, int threads, const Work& work) {
+void by_pieces(Eigen::Index count, Eigen::Index fewest, Eigen::Index most, int threads, const Work& work) {
+  const Eigen::Index workers = resolve_threads(threads), rounds = (count + most * workers - 1) / (most * workers);
+  const Eigen::Index piece = std::max(fewest, count / std::max<Eigen::Index>(1, rounds * workers) + 1);
   parallel_for((count + piece - 1) / piece, threads, [&](std::size_t item, int) {
     const Eigen::Index first = static_cast<Eigen::Index>(item) * piece;
     work(first, std::min(count, first + piece));
@@ -73,8 +76,7 @@ SdfValues ProbabilisticSdf::query(const Eigen::Matrix3Xd& points, int threads) c
   out.mean.resize(points.cols());
   out.sigma.resize(points.cols());
   out.known.resize(points.cols());
-  const Eigen::Index each = points.cols() / resolve_threads(threads) + 1;
-  by_pieces(points.cols(), std::clamp(each, kFewestPoints, kMostPoints), threads,
+  by_pieces(points.cols(), kFewestPoints, kMostPoints, threads,
             [&](Eigen::Index first, Eigen::Index last) { detail::query_points(*grid_, points, first, last, out); });
   return out;
 }
@@ -96,20 +98,8 @@ SdfHits ProbabilisticSdf::cast_rays(const Eigen::Matrix3Xd& origins, const Eigen
   out.normal.setConstant(3, count, kNaN);
   out.sigma.setConstant(count, kNaN);
   const std::shared_ptr<detail::CrossingCells> crossing = grid_->crossing_cells();
-  by_pieces(count, kRaysOfItem, threads, [&](Eigen::Index first, Eigen::Index last) {
-    detail::SdfSampler sampler(*grid_);
-    for (Eigen::Index i = first; i < last; ++i) {
-      const double t = detail::first_crossing(*grid_, *crossing, sampler, origins.col(i), directions.col(i));
-      if (std::isnan(t)) continue;
-      const Eigen::Vector3d point = origins.col(i) + t * directions.col(i);
-      Eigen::Vector3d normal = sampler.direction(point);
-      if (normal.isZero(0)) normal = -directions.col(i).normalized();  // at the rim of what was seen
-      out.hit[i] = 1;
-      out.distance[i] = t;
-      out.point.col(i) = point;
-      out.normal.col(i) = normal;
-      out.sigma[i] = std::sqrt(sampler.at(point).variance);
-    }
+  by_pieces(count, kFewestRays, kMostRays, threads, [&](Eigen::Index first, Eigen::Index last) {
+    detail::cast_rays(*grid_, *crossing, origins, directions, first, last, out);
   });
   return out;
 }

@@ -10,159 +10,221 @@ namespace {
 using Eigen::Vector3d;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-/// Walks the cells of a lattice along a ray, from t = begin to t = end, through the cells from `first` to `last` on
-/// each axis: a start on a wall belongs to the cell on their side of it, and so does what rounding leaves at the end.
+/// A ray with a unit direction, and 1 / direction; where that is not finite it leaves no cell along the axis.
+struct Way {
+  const Vector3d &origin, &direction, &inverse;
+};
+
+/// Walks cells along a ray from t = begin to t = end, `count` (a power of two) a side from `first` on. A start on a
+/// wall belongs to the cell on the side of it that rounding says, and so does what rounding leaves at the end.
 class CellWalk {
  public:
-  CellWalk(const Vector3d& origin, const Vector3d& direction, double side, double begin, double end,
-           const BlockKey& first, const BlockKey& last)
-      : t_(begin), end_(end) {
-    const Vector3d start = origin + begin * direction;
-    const int low[3] = {first.x, first.y, first.z}, high[3] = {last.x, last.y, last.z};
+  CellWalk(const Way& way, double side, double begin, double end, const BlockKey& first, int count)
+      : t_(begin), end_(end), outside_(~(static_cast<std::uint64_t>(count - 1) * kUnits)) {
+    const double per_side = 1 / side;
+    const int low[3] = {first.x, first.y, first.z};
     for (int k = 0; k < 3; ++k) {
-      const double place = std::clamp<double>(std::floor(start[k] / side), low[k], high[k]);
-      cell_[k] = static_cast<int>(place);
-      step_[k] = direction[k] > 0 ? 1 : -1;
-      past_[k] = direction[k] > 0 ? high[k] + 1 : low[k] - 1;
-      delta_[k] = direction[k] != 0 ? side / std::abs(direction[k]) : kInfinity;
-      const double wall = (place + (direction[k] > 0 ? 1 : 0)) * side;
-      next_[k] = direction[k] != 0 ? std::max(begin, (wall - origin[k]) / direction[k]) : kInfinity;
+      const bool up = way.direction[k] > 0, moves = std::abs(way.inverse[k]) < kInfinity;
+      const int at = floor_of((way.origin[k] + begin * way.direction[k]) * per_side);
+      const int cell = std::clamp(at, low[k], low[k] + count - 1);
+      place_ += static_cast<std::uint64_t>(cell - low[k]) << kShift[k];
+      step_[k] = (up ? 1 : ~std::uint64_t{0}) << kShift[k];
+      delta_[k] = side * std::abs(way.inverse[k]);
+      next_[k] = moves ? std::max(begin, ((cell + up) * side - way.origin[k]) * way.inverse[k]) : kInfinity;
     }
   }
-  bool done() const { return t_ >= end_ || left_; }
-  BlockKey cell() const { return {cell_[0], cell_[1], cell_[2]}; }
+  bool done() const { return t_ >= end_ || (place_ & outside_) != 0; }
+  /// The cell from `first` on, packed as BlockKey is, without its offset.
+  std::uint64_t place() const { return place_; }
   double begin() const { return t_; }
-  double end() const { return std::min({next_[0], next_[1], next_[2], end_}); }
+  double end() const { return std::min(std::min(next_[0], next_[1]), std::min(next_[2], end_)); }
   void advance() {
-    const int k = next_[0] < next_[1] ? (next_[0] < next_[2] ? 0 : 2) : (next_[1] < next_[2] ? 1 : 2);
+    if (next_[0] < next_[1]) {
+      next_[0] < next_[2] ? step(0) : step(2);
+    } else {
+      next_[1] < next_[2] ? step(1) : step(2);
+    }
+  }
+
+ private:
+  static constexpr int kShift[3] = {42, 21, 0};
+  static constexpr std::uint64_t kUnits = std::uint64_t{1} << 42 | std::uint64_t{1} << 21 | 1;
+  void step(int k) {
     t_ = next_[k];
     next_[k] += delta_[k];
-    cell_[k] += step_[k];
-    left_ = cell_[k] == past_[k];
+    place_ += step_[k];
   }
 
- private:
   double t_, end_, next_[3], delta_[3];
-  int cell_[3], step_[3], past_[3];
-  bool left_ = false;
+  std::uint64_t place_ = 0, step_[3];
+  const std::uint64_t outside_;  // bits that are set beyond the last cell, or before the first
 };
 
-/// The map between the eight corners of one cell, along a ray.
+constexpr int kWide = 1 << 20;
+const BlockKey kLowest{-kWide, -kWide, -kWide};  // so that a place is a packed key
+
+/// Where in an 8 x 8 x 8 lattice.
+int z_of(std::uint64_t place) {
+  return static_cast<int>(place & 7);
+}
+int xy_of(std::uint64_t place) {
+  return static_cast<int>(place >> 21 & 7) << 3 | static_cast<int>(place >> 42 & 7);
+}
+BlockKey cell_of(const BlockKey& first, std::uint64_t place) {
+  return {first.x + static_cast<int>(place >> 42), first.y + static_cast<int>(place >> 21 & 7),
+          first.z + static_cast<int>(place & 7)};
+}
+
+/// The map between the eight corners of one cell along a ray: a cubic polynomial of s, from 0 where the ray is at
+/// `place`, voxels from the lowest corner, in steps of `slope`.
 class CellAlongRay {
  public:
-  CellAlongRay(const SdfGrid& grid, SdfSampler& sampler, const BlockKey& cell, const Vector3d& origin,
-               const Vector3d& direction)
-      : first_(origin / grid.options.voxel - Vector3d(cell.x, cell.y, cell.z)), slope_(direction / grid.options.voxel) {
-    sampler.corners(cell.x, cell.y, cell.z, mean_);
+  CellAlongRay(const float* mean, const Vector3d& place, const Vector3d& slope) {
+    const double x = place.x(), y = place.y(), z = place.z(), dx = slope.x(), dy = slope.y(), dz = slope.z();
+    double of_y[2][3];  // between two of the four edges along x
+    for (int k = 0; k < 2; ++k) {
+      const float* const m = mean + 4 * k;
+      const double low = m[1] - m[0], high = m[3] - m[2], start = m[0] + low * x, slant = low * dx;
+      const double apart = m[2] + high * x - start, growing = high * dx - slant;
+      of_y[k][0] = start + apart * y;
+      of_y[k][1] = slant + growing * y + apart * dy;
+      of_y[k][2] = growing * dy;
+    }
+    for (int k = 0; k < 3; ++k) of_y[1][k] -= of_y[0][k];
+    power_[0] = of_y[0][0] + of_y[1][0] * z;
+    power_[1] = of_y[0][1] + of_y[1][1] * z + of_y[1][0] * dz;
+    power_[2] = of_y[0][2] + of_y[1][2] * z + of_y[1][1] * dz;
+    power_[3] = of_y[1][2] * dz;
   }
-  double mean(double t) const {
-    float place[3];
-    for (int k = 0; k < 3; ++k) place[k] = static_cast<float>(std::clamp(first_[k] + t * slope_[k], 0.0, 1.0));
-    return SdfSampler::trilinear(mean_, place);
-  }
+  double mean(double s) const { return power_[0] + s * (power_[1] + s * (power_[2] + s * power_[3])); }
 
  private:
-  Vector3d first_, slope_;
-  float mean_[8];
+  double power_[4];
 };
 
-/// Follows one ray through the cells and finds where the mean distance crosses zero from the front.
-class Marcher {
- public:
-  Marcher(const SdfGrid& grid, SdfSampler& sampler, const Vector3d& origin, const Vector3d& direction)
-      : grid_(grid), sampler_(sampler), origin_(origin), direction_(direction) {
-    half_voxel_ = 0.5 * grid.options.voxel / direction.norm();
-    enough_ = 1e-4 * grid.options.voxel;
+/// Where the mean is zero between a, where it is fa > 0, and b, where it is fb <= 0.
+double refine(const CellAlongRay& along, double a, double fa, double b, double fb, double enough) {
+  for (int k = 0; k < 8; ++k) {
+    const double s = a + (b - a) * std::clamp(fa / (fa - fb), 0.05, 0.95), mean = along.mean(s);
+    if (std::abs(mean) < enough) return s;
+    (mean > 0 ? a : b) = s;
+    (mean > 0 ? fa : fb) = mean;
   }
+  return a + (b - a) * fa / (fa - fb);
+}
 
-  /// First crossing from the front within a cell that the ray is in from t = begin to t = end; NaN: none. Between
-  /// looks half a voxel apart it is crossed once at most.
-  double crossing(const BlockKey& cell, double begin, double end) const {
-    const CellAlongRay along(grid_, sampler_, cell, origin_, direction_);
-    double last = begin, last_mean = along.mean(begin);
-    if (last_mean <= 0 && from_the_front(begin)) return begin;
-    const int steps = std::max(1, static_cast<int>(std::ceil((end - begin) / half_voxel_)));
-    for (int i = 1; i <= steps; ++i) {
-      const double t = begin + (end - begin) * i / steps, mean = along.mean(t);
-      if (last_mean > 0 && mean <= 0) return refine(along, last, last_mean, t, mean);
-      last = t;
-      last_mean = mean;
-    }
-    return kNone;
-  }
-
- private:
-  /// Where voxels were only looked through, cells do not fit together: one can be in front, the next behind. And a
-  /// crossing on the border of two cells may, by rounding, be in neither.
-  bool from_the_front(double t) const {
-    constexpr double kBefore = 0.1;  // half voxels: far enough to tell the side from roundings
-    if (t - kBefore * half_voxel_ <= 0) return false;
-    const Sample before = sampler_.at(origin_ + (t - kBefore * half_voxel_) * direction_);
-    return before.known && before.mean > 0;
-  }
-
-  double refine(const CellAlongRay& along, double a, double fa, double b, double fb) const {
-    for (int k = 0; k < 8; ++k) {
-      const double t = a + (b - a) * std::clamp(fa / (fa - fb), 0.05, 0.95), mean = along.mean(t);
-      if (std::abs(mean) < enough_) return t;
-      (mean > 0 ? a : b) = t;
-      (mean > 0 ? fa : fb) = mean;
-    }
-    return a + (b - a) * fa / (fa - fb);
-  }
-
-  const SdfGrid& grid_;
-  SdfSampler& sampler_;
-  const Vector3d &origin_, &direction_;
-  double half_voxel_ = 0, enough_ = 0;
-};
-
-bool clip(const Eigen::AlignedBox3d& box, const Vector3d& origin, const Vector3d& direction, double& begin,
-          double& end) {
+void clip(const Eigen::AlignedBox3d& box, const Vector3d& origin, const Vector3d& inverse, double& begin, double& end) {
   for (int k = 0; k < 3; ++k) {
-    if (direction[k] == 0) {
-      if (origin[k] < box.min()[k] || origin[k] > box.max()[k]) return false;
-      continue;
+    if (std::abs(inverse[k]) < kInfinity) {
+      const double a = (box.min()[k] - origin[k]) * inverse[k], b = (box.max()[k] - origin[k]) * inverse[k];
+      begin = std::max(begin, std::min(a, b));
+      end = std::min(end, std::max(a, b));
+    } else if (origin[k] < box.min()[k] || origin[k] > box.max()[k]) {
+      end = begin;
     }
-    const double a = (box.min()[k] - origin[k]) / direction[k], b = (box.max()[k] - origin[k]) / direction[k];
-    begin = std::max(begin, std::min(a, b));
-    end = std::min(end, std::max(a, b));
   }
-  return begin < end;
+}
+
+bool flagged(const std::atomic<std::uint64_t>* words, std::uint64_t place) {
+  return words[z_of(place)].load(std::memory_order_relaxed) >> xy_of(place) & 1;
+}
+
+BlockKey first_of(const BlockKey& outer) {
+  return {kBlockSide * outer.x, kBlockSide * outer.y, kBlockSide * outer.z};
 }
 
 }  // namespace
 
-double first_crossing(const SdfGrid& grid, CrossingCells& crossing, SdfSampler& sampler, const Vector3d& origin,
-                      const Vector3d& direction) {
-  double begin = 0, end = kInfinity;
-  if (grid.bounds.isEmpty() || !clip(grid.bounds, origin, direction, begin, end)) return kNone;
-  const double voxel = grid.options.voxel, block = kBlockSide * voxel;
-  const Marcher marcher(grid, sampler, origin, direction);
-  const BlockKey lowest{-kMostBlocks, -kMostBlocks, -kMostBlocks}, highest{kMostBlocks, kMostBlocks, kMostBlocks};
-  for (CellWalk wide(origin, direction, kBlockSide * block, begin, end, lowest, highest); !wide.done();
-       wide.advance()) {
-    const BlockKey outer = wide.cell(), first{8 * outer.x, 8 * outer.y, 8 * outer.z},
-                   last{first.x + 7, first.y + 7, first.z + 7};
-    const int at = grid.mask_table.find(outer.packed());
+RayMarch::RayMarch(const SdfGrid& grid, CrossingCells& crossing, SdfSampler& sampler, const Vector3d& origin,
+                   const Vector3d& direction)
+    : grid_(grid),
+      crossing_(crossing),
+      sampler_(sampler),
+      origin_(origin),
+      direction_(direction),
+      inverse_(direction.cwiseInverse()) {
+  if (grid.bounds.isEmpty()) return;
+  end_ = kInfinity;
+  clip(grid.bounds, origin, inverse_, begin_, end_);
+}
+
+BlockOnRay RayMarch::first_block() const {
+  return next_block(begin_);
+}
+
+double RayMarch::crossing(BlockOnRay in) const {
+  while (in.block >= 0) {
+    const double t = crossing_in(in);
+    if (!std::isnan(t)) return t;
+    in = next_block(in.end);
+  }
+  return kNone;
+}
+
+BlockOnRay RayMarch::next_block(double begin) const {
+  const Way way{origin_, direction_, inverse_};
+  const double voxel = grid_.options.voxel, block = kBlockSide * voxel;
+  for (CellWalk wide(way, kBlockSide * block, begin, end_, kLowest, 2 * kWide); !wide.done(); wide.advance()) {
+    const int at = grid_.mask_table.find(wide.place());
     if (at < 0) continue;
-    const BlockMask& mask = grid.masks[at];
-    for (CellWalk walk(origin, direction, block, wide.begin(), wide.end(), first, last); !walk.done(); walk.advance()) {
-      const BlockKey key = walk.cell(), low{8 * key.x, 8 * key.y, 8 * key.z}, high{low.x + 7, low.y + 7, low.z + 7};
-      if (!(mask[key.z & 7] >> (8 * (key.y & 7) + (key.x & 7)) & 1)) continue;
-      const std::atomic<std::uint64_t>* words = crossing.of(grid.find(key), key, sampler);
+    const BlockMask& mask = grid_.masks[at];
+    const BlockKey first = first_of(BlockKey::unpack(wide.place()));
+    for (CellWalk walk(way, block, wide.begin(), wide.end(), first, kBlockSide); !walk.done(); walk.advance()) {
+      if (!(mask[z_of(walk.place())] >> xy_of(walk.place()) & 1)) continue;
+      const BlockKey key = cell_of(first, walk.place());
+      const int found = grid_.find(key);
+      const std::atomic<std::uint64_t>* words = crossing_.of(found, key, sampler_);
       if (!words) continue;
-      for (CellWalk cells(origin, direction, voxel, walk.begin(), walk.end(), low, high); !cells.done();
-           cells.advance()) {
-        const BlockKey cell = cells.cell();
-        const std::uint64_t word = words[cell.z & 7].load(std::memory_order_relaxed);
-        if (!(word >> (8 * (cell.y & 7) + (cell.x & 7)) & 1)) continue;
-        const double t = marcher.crossing(cell, cells.begin(), cells.end());
-        if (!std::isnan(t)) return t;
+      CellWalk cells(way, voxel, walk.begin(), walk.end(), first_of(key), kBlockSide);
+      for (; !cells.done(); cells.advance()) {
+        if (flagged(words, cells.place())) return {found, key, cells.begin(), walk.end()};
       }
     }
   }
+  return {};
+}
+
+double RayMarch::crossing_in(const BlockOnRay& in) const {
+  const Way way{origin_, direction_, inverse_};
+  const std::atomic<std::uint64_t>* words = crossing_.of(in.block, in.key, sampler_);
+  const BlockKey first = first_of(in.key);
+  CellWalk cells(way, grid_.options.voxel, in.begin, in.end, first, kBlockSide);
+  for (; !cells.done(); cells.advance()) {
+    if (!flagged(words, cells.place())) continue;
+    const double t = crossing_of(cell_of(first, cells.place()), cells.begin(), cells.end());
+    if (!std::isnan(t)) return t;
+  }
   return kNone;
+}
+
+/// First crossing from the front within a cell that the ray is in from t = begin to t = end; NaN: none. Between looks
+/// half a voxel apart it is crossed once at most.
+double RayMarch::crossing_of(const BlockKey& cell, double begin, double end) const {
+  const double voxel = grid_.options.voxel, per_voxel = 1 / voxel;
+  const Vector3d start = (origin_ + begin * direction_) * per_voxel - Vector3d(cell.x, cell.y, cell.z);
+  float corner[8];
+  sampler_.corners(cell.x, cell.y, cell.z, corner);
+  const CellAlongRay along(corner, start.cwiseMax(0).cwiseMin(1), direction_ * per_voxel);
+  double last = 0, last_mean = along.mean(0);
+  if (last_mean <= 0 && from_the_front(begin)) return begin;
+  const int steps = 1 + static_cast<int>((end - begin) * 2 * per_voxel);
+  const double step = (end - begin) / steps;
+  for (int i = 1; i <= steps; ++i) {
+    const double s = i * step, mean = along.mean(s);
+    if (last_mean > 0 && mean <= 0) return begin + refine(along, last, last_mean, s, mean, 1e-4 * voxel);
+    last = s;
+    last_mean = mean;
+  }
+  return kNone;
+}
+
+/// Where voxels were only looked through, cells do not fit together: one can be in front, the next behind. And a
+/// crossing on the border of two cells may, by rounding, be in neither.
+bool RayMarch::from_the_front(double t) const {
+  const double before_t = t - 0.05 * grid_.options.voxel;  // far enough to tell the side from roundings
+  if (before_t <= 0) return false;
+  const Sample before = sampler_.at(origin_ + before_t * direction_);
+  return before.known && before.mean > 0;
 }
 
 }  // namespace mmgrasp::detail

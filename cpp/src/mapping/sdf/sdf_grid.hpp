@@ -18,6 +18,12 @@ constexpr int kBlockSide = 8;                                       // voxels al
 constexpr int kBlockVoxels = kBlockSide * kBlockSide * kBlockSide;  // x runs fastest
 constexpr int kMostBlocks = (1 << 20) - 8;                          // from the origin along an axis
 
+/// The largest whole number that is not above a value of the size of an int; std::floor is a call on old processors.
+inline int floor_of(double value) {
+  const int towards_zero = static_cast<int>(value);
+  return towards_zero - (value < towards_zero);
+}
+
 /// Place of a block: its first voxel is 8 times this, voxel i lies at i * SdfOptions::voxel.
 struct BlockKey {
   int x = 0, y = 0, z = 0;

@@ -83,16 +83,14 @@ class SdfSampler {
   int block_at(const Eigen::Vector3d& point) {
     const Eigen::Vector3d g = point * scale_;
     if (!(g.cwiseAbs().maxCoeff() < 8.0 * kMostBlocks)) return -1;
-    return find({static_cast<int>(std::floor(g.x())) >> 3, static_cast<int>(std::floor(g.y())) >> 3,
-                 static_cast<int>(std::floor(g.z())) >> 3});
+    return find({floor_of(g.x()) >> 3, floor_of(g.y()) >> 3, floor_of(g.z()) >> 3});
   }
 
   /// Fetches what at() will read of this point.
   void prefetch(const Eigen::Vector3d& point) {
     const int block = block_at(point);
     if (block < 0) return;
-    const int y = static_cast<int>(std::floor(point.y() * scale_)),
-              z = static_cast<int>(std::floor(point.z() * scale_));
+    const int y = floor_of(point.y() * scale_), z = floor_of(point.z() * scale_);
     for (const auto& layer : grid_.layers) {
       if (!layer[block]) continue;
       const int row = ((z & 7) << 3) + (y & 7);
@@ -192,9 +190,8 @@ class SdfSampler {
   /// The cell of a place in voxels, and where in it that is.
   static void split(const Eigen::Vector3d& place, int* cell, float* t) {
     for (int k = 0; k < 3; ++k) {
-      const double floor = std::floor(place[k]);
-      cell[k] = static_cast<int>(floor);
-      t[k] = static_cast<float>(place[k] - floor);
+      cell[k] = floor_of(place[k]);
+      t[k] = static_cast<float>(place[k] - cell[k]);
     }
   }
 
@@ -244,26 +241,33 @@ class SdfSampler {
   Corners near_surface(const std::array<int, 3>& cell, float* mean, float* weight) {
     if (grid_.layers.size() != 1) return Corners::mixed;
     const int x = cell[0] & 7, y = cell[1] & 7, z = cell[2] & 7;
-    bool looked_through = false, known = true;
+    const bool inside = x < 7 && y < 7 && z < 7;
+    const VoxelBlock* const first = around_cell_.voxels(0);
+    if (!first) return Corners::unknown;
+    bool looked_through = first->looked_through;
     for (int k = 0; k < 8; k += 2) {  // pairs along x share a row, or cross into the next block
-      const int v = y + (k >> 1 & 1), w = z + (k >> 2), beyond = (v >> 3) << 1 | (w >> 3) << 2;
-      const VoxelBlock* const low = around_cell_.voxels(beyond);
-      const VoxelBlock* const high = x < 7 ? low : around_cell_.voxels(beyond | 1);
-      if (!low || !high) return Corners::unknown;
+      const int v = y + (k >> 1 & 1), w = z + (k >> 2);
+      const VoxelBlock *low = first, *high = first;
+      if (!inside) {
+        const int beyond = (v >> 3) << 1 | (w >> 3) << 2;
+        low = around_cell_.voxels(beyond);
+        high = x < 7 ? low : around_cell_.voxels(beyond | 1);
+        if (!low || !high) return Corners::unknown;
+        looked_through = looked_through || low->looked_through || high->looked_through;
+      }
       const int row = (w & 7) << 3 | (v & 7), next = (x + 1) & 7;
       mean[k] = low->rows[row][x];
       mean[k + 1] = high->rows[row][next];
       weight[k] = low->rows[row][kBlockSide + x];
       weight[k + 1] = high->rows[row][kBlockSide + next];
-      looked_through |= low->looked_through | high->looked_through;
     }
-    for (int k = 0; k < 8; ++k) known &= weight[k] > 0;
-    if (!known) return Corners::unknown;
-    if (looked_through) {
-      for (int k = 0; k < 8; ++k) {
-        const VoxelBlock& voxels = *around_cell_.voxels(block_of(x, y, z, k));
-        if (voxels.carved(voxel_of(x + (k & 1), y + (k >> 1 & 1), z + (k >> 2)))) return Corners::mixed;
-      }
+    float least = weight[0];
+    for (int k = 1; k < 8; ++k) least = std::min(least, weight[k]);
+    if (!(least > 0)) return Corners::unknown;
+    for (int k = 0; looked_through && k < 8; ++k) {
+      if (!(mean[k] < 0)) continue;
+      const VoxelBlock& voxels = inside ? *first : *around_cell_.voxels(block_of(x, y, z, k));
+      if (voxels.carved(voxel_of(x + (k & 1), y + (k >> 1 & 1), z + (k >> 2)))) return Corners::mixed;
     }
     return Corners::near;
   }
@@ -286,33 +290,52 @@ class SdfSampler {
     split(g, cell, t);
     const int first[3] = {cell[0] - 1, cell[1] - 1, cell[2] - 1};
     around_stencil_.enter({first[0] >> 3, first[1] >> 3, first[2] >> 3});
-    float mean[4][4][4];  // [z][y][x] from one voxel before the cell to one behind it, without edges and corners
+    // Central differences of interpolated values are interpolated differences. The voxels from one before the cell to
+    // one behind it, without edges and corners, are added up with the weights of the two other axes.
+    float along[3][4] = {}, least = 1;
+    const float share[3][4] = {{0, 1 - t[0], t[0], 0}, {0, 1 - t[1], t[1], 0}, {0, 1 - t[2], t[2], 0}};
+    bool looked_through = false;
+    const int u = first[0] & 7, crosses = u > 4;
     for (int z = 0; z < 4; ++z) {
       for (int y = 0; y < 4; ++y) {
         const int outside = (z == 0 || z == 3) + (y == 0 || y == 3);
         if (outside == 2) continue;
         const int v = (first[1] & 7) + y, w = (first[2] & 7) + z, beyond = (v >> 3) << 1 | (w >> 3) << 2;
         const int row = (w & 7) << 3 | (v & 7);
-        for (int x = outside == 0 ? 0 : 1; x <= (outside == 0 ? 3 : 2); ++x) {
-          const int u = (first[0] & 7) + x;
-          const VoxelBlock* const voxels = around_stencil_.voxels(beyond | u >> 3);
-          if (!voxels || !(voxels->rows[row][kBlockSide + (u & 7)] > 0)) return false;
-          if (voxels->looked_through && voxels->carved(row << 3 | (u & 7))) return false;
-          mean[z][y][x] = voxels->rows[row][u & 7];
+        const VoxelBlock* const low = around_stencil_.voxels(beyond);
+        const VoxelBlock* const high = crosses ? around_stencil_.voxels(beyond | 1) : low;
+        if (!low || !high) return false;
+        looked_through = looked_through || low->looked_through || high->looked_through;
+        for (int x = outside; x < 4 - outside; ++x) {
+          const float* const at = (u + x < 8 ? low : high)->rows[row] + ((u + x) & 7);
+          const float mean = at[0];
+          least = std::min(least, at[kBlockSide]);
+          along[0][x] += share[1][y] * share[2][z] * mean;
+          along[1][y] += share[0][x] * share[2][z] * mean;
+          along[2][z] += share[0][x] * share[1][y] * mean;
         }
       }
     }
+    if (!(least > 0) || (looked_through && stencil_carved(first))) return false;
     for (int k = 0; k < 3; ++k) {
-      float end[2];
-      for (int way = 0; way < 2; ++way) {
-        float corner[8];
-        const int shift[3] = {k == 0 ? 2 * way : 1, k == 1 ? 2 * way : 1, k == 2 ? 2 * way : 1};
-        for (int c = 0; c < 8; ++c) corner[c] = mean[shift[2] + (c >> 2)][shift[1] + (c >> 1 & 1)][shift[0] + (c & 1)];
-        end[way] = trilinear(corner, t);
-      }
-      out[k] = 0.5 * (static_cast<double>(end[1]) - end[0]);
+      out[k] = 0.5 * ((1 - t[k]) * (along[k][2] - along[k][0]) + t[k] * (along[k][3] - along[k][1]));
     }
     return true;
+  }
+
+  /// Whether one of the voxels that differences_near_surface() reads was only looked through.
+  bool stencil_carved(const int* first) {
+    for (int z = 0; z < 4; ++z) {
+      for (int y = 0; y < 4; ++y) {
+        const int outside = (z == 0 || z == 3) + (y == 0 || y == 3);
+        for (int x = outside; x < 4 - outside; ++x) {
+          const int u = (first[0] & 7) + x, v = (first[1] & 7) + y, w = (first[2] & 7) + z;
+          const VoxelBlock& voxels = *around_stencil_.voxels(u >> 3 | (v >> 3) << 1 | (w >> 3) << 2);
+          if (voxels.looked_through && voxels.carved(voxel_of(u, v, w))) return true;
+        }
+      }
+    }
+    return false;
   }
 
   /// Gives corners that were only looked through a lower bound: the distance grows no faster than the way from

@@ -1,0 +1,62 @@
+#include "mapping/sdf/cast_rays.hpp"
+
+#include <cmath>
+
+#include "mapping/sdf/block_order.hpp"
+#include "mapping/sdf/ray_march.hpp"
+
+namespace mmgrasp::detail {
+
+namespace {
+
+constexpr std::size_t kAhead = 6;  // rays that are fetched before they are needed
+
+/// A direction as a unit vector, and its length.
+struct UnitDirection {
+  explicit UnitDirection(const Eigen::Vector3d& direction) : length(direction.norm()), unit(direction / length) {
+    if (length > 1e-100 && length < 1e100) return;
+    length = direction.stableNorm();
+    unit = direction.stableNormalized();
+  }
+  double length;
+  Eigen::Vector3d unit;
+};
+
+/// Fetches what is read and written of a ray.
+void prefetch(const Eigen::Matrix3Xd& origins, const Eigen::Matrix3Xd& directions, Eigen::Index i, const SdfHits& out) {
+  const auto* const point = out.point.data() + 3 * i;
+  const auto* const normal = out.normal.data() + 3 * i;
+  const void* const all[] = {
+      origins.data() + 3 * i, directions.data() + 3 * i, point, normal, &out.distance[i], &out.sigma[i], &out.hit[i]};
+  for (const void* const each : all) __builtin_prefetch(each);
+}
+
+}  // namespace
+
+void cast_rays(const SdfGrid& grid, CrossingCells& crossing, const Eigen::Matrix3Xd& origins,
+               const Eigen::Matrix3Xd& directions, Eigen::Index first, Eigen::Index last, SdfHits& out) {
+  SdfSampler sampler(grid);
+  std::vector<BlockOnRay> met(last - first);
+  std::vector<int> block(last - first);
+  for (Eigen::Index i = first; i < last; ++i) {
+    const UnitDirection direction(directions.col(i));
+    met[i - first] = RayMarch(grid, crossing, sampler, origins.col(i), direction.unit).first_block();
+    block[i - first] = met[i - first].block;
+  }
+  const std::vector<int> order = block_order(block, static_cast<int>(grid.keys.size()));
+  for (std::size_t at = 0; at < order.size() && block[order[at]] >= 0; ++at) {
+    if (at + kAhead < order.size()) prefetch(origins, directions, first + order[at + kAhead], out);
+    const Eigen::Index i = first + order[at];
+    const UnitDirection direction(directions.col(i));
+    const double t = RayMarch(grid, crossing, sampler, origins.col(i), direction.unit).crossing(met[order[at]]);
+    if (std::isnan(t)) continue;
+    const Eigen::Vector3d point = origins.col(i) + t * direction.unit, normal = sampler.direction(point);
+    out.hit[i] = 1;
+    out.distance[i] = t / direction.length;
+    out.point.col(i) = point;
+    out.normal.col(i) = normal.isZero(0) ? -direction.unit : normal;  // zero at the rim of what was seen
+    out.sigma[i] = std::sqrt(sampler.at(point).variance);
+  }
+}
+
+}  // namespace mmgrasp::detail

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "mmgrasp/core/detail/numbers.hpp"
+#include "trajopt/whole_body_check.hpp"
 
 namespace mmgrasp::detail {
 namespace {
@@ -37,6 +38,20 @@ double separation(const SeparatingPlane& plane, const VectorXd& q) {
     return point_on(link, p);
   };
   return plane.normal.dot(placed(plane.a, plane.p_a) - placed(plane.b, plane.p_b));
+}
+
+/// Bodies that lie face to face touch at no point of their own: each answer names another, and a plane through that one
+/// alone lets them tilt about it. So planes of one face add up, those of other faces go.
+void add_plane(std::vector<SeparatingPlane>& planes, const SeparatingPlane& plane) {
+  constexpr double kSameFace = 0.95, kSamePoint = 2e-3;  // cosine between normals; [m]
+  planes.erase(std::remove_if(planes.begin(), planes.end(),
+                              [&](const SeparatingPlane& other) {
+                                return other.normal.dot(plane.normal) < kSameFace ||
+                                       ((other.p_a - plane.p_a).norm() < kSamePoint &&
+                                        (other.p_b - plane.p_b).norm() < kSamePoint);
+                              }),
+               planes.end());
+  planes.push_back(plane);
 }
 
 /// Planes between bodies in one configuration.
@@ -190,6 +205,7 @@ CollisionRows::CollisionRows(std::vector<CollisionChecker*> checkers, std::vecto
 }
 
 bool CollisionRows::look_along(const WholeBodyTrajectory& trajectory) {
+  constexpr double kLast = 0.98;  // the end of an interval is the next one's
   bool collides = false;
   for (int i = 0; i < static_cast<int>(checkers_.size()); ++i) {
     CollisionChecker* checker = checkers_[i];
@@ -200,16 +216,27 @@ bool CollisionRows::look_along(const WholeBodyTrajectory& trajectory) {
       if (checker->is_free(q) || !checker->first_contact(q)) continue;
       collides = true;
       if (k < kFiner) samples_.insert({i, s});
-      const double within = margin_ + 1e-3;
-      for (const DistanceResult& d : checker->distances(q, within + kCorners * padding_)) {
-        if (d.value < within + kCorners * padding_of(*checker, d)) watch(*checker, d);
-      }
-      for (const Contact& c : padding_ > 0 ? checker->contacts(q) : std::vector<Contact>{})
-        if (c.by_padding) corners_.insert({c.with_scene, c.a, c.b});
+      watch_at(*checker, q);
+    }
+  }
+  if (!collides) {
+    for (const auto& [i, s] : collision_places(trajectory, checkers_)) {
+      collides = true;
+      samples_.insert({i, std::min(s, kLast)});
+      watch_at(*checkers_[i], at_sample(trajectory, i, s));
     }
   }
   if (collides) take_planes(trajectory);
   return collides;
+}
+
+void CollisionRows::watch_at(CollisionChecker& checker, const VectorXd& q) {
+  const double within = margin_ + 1e-3;
+  for (const DistanceResult& d : checker.distances(q, within + kCorners * padding_)) {
+    if (d.value < within + kCorners * padding_of(checker, d)) watch(checker, d);
+  }
+  for (const Contact& c : padding_ > 0 ? checker.contacts(q) : std::vector<Contact>{})
+    if (c.by_padding) corners_.insert({c.with_scene, c.a, c.b});
 }
 
 void CollisionRows::keep_clear(const std::vector<VectorXd>& positions, bool keeps_sides) {
@@ -299,7 +326,7 @@ void CollisionRows::take_planes_at(const Sample& sample, const VectorXd& q, cons
     std::vector<SeparatingPlane>& planes = planes_[sample][pair];
     const double room = rooms.at(pair);
     if (reference_.empty()) {
-      planes = {here.plane(d, room)};
+      add_plane(planes, here.plane(d, room));
       continue;
     }
     const double clear = d.value - kept_apart(pair);
@@ -310,7 +337,7 @@ void CollisionRows::take_planes_at(const Sample& sample, const VectorXd& q, cons
     }
     const auto r = known.find(pair);
     if (r == known.end() || r->second.value < room) {
-      planes = {here.plane(d, room)};
+      add_plane(planes, here.plane(d, room));
       continue;
     }
     SeparatingPlane parted = apart->plane(r->second, room);

@@ -64,8 +64,8 @@ class MMGRASP_EXPORT CollisionRows {
   CollisionRows(std::vector<CollisionChecker*> checkers, std::vector<int> pinned, double margin,
                 double constraint_distance);
 
-  /// Looks along a trajectory; false when nothing collides. Pairs that collide anywhere are constrained from then on
-  /// wherever they are within constraint_distance.
+  /// Looks along a trajectory, and where its judge finds collisions between the places looked at; false when nothing
+  /// collides. Pairs that collide anywhere are constrained from then on wherever they are within constraint_distance.
   bool look_along(const WholeBodyTrajectory& trajectory);
   /// `positions`, one per waypoint, are known to be free, also straight between them: what is within
   /// constraint_distance of the scene there is constrained. With `keeps_sides`, bodies that collide later are pushed
@@ -76,6 +76,8 @@ class MMGRASP_EXPORT CollisionRows {
  private:
   using Pair = std::tuple<bool, std::string, std::string>;  // with the scene; a; b
   using Sample = std::pair<int, double>;                    // interval, fraction
+  /// Notes the pairs that are near each other.
+  void watch_at(CollisionChecker& checker, const Eigen::VectorXd& q);
   void take_planes(const WholeBodyTrajectory& trajectory);
   void take_planes_at(const Sample& sample, const Eigen::VectorXd& q, const std::map<Pair, double>& rooms);
   Eigen::VectorXd reference(const Sample& sample) const;

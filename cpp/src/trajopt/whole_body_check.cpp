@@ -1,4 +1,6 @@
 // check_whole_body(): judges a trajectory by other means than the optimiser's.
+#include "trajopt/whole_body_check.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -264,10 +266,17 @@ VectorXd bend_between(const WholeBodyTrajectory& t, const Moment& from, const Mo
   return 4.0 / 3 * bend;
 }
 
+/// Where an edge is not free.
+struct Meeting {
+  double time;
+  VectorXd q;
+  std::string what;
+};
+
 /// Conservative advancement along the straight edge with what the motion strays from it added to what has to be clear;
 /// halves where that is not enough to tell.
-void check_edges(Ledger& ledger, CollisionChecker& checker, const WholeBodyTrajectory& t, const Moment& from,
-                 const Moment& to, int splits) {
+void find_meetings(std::vector<Meeting>& meetings, CollisionChecker& checker, const WholeBodyTrajectory& t,
+                   const Moment& from, const Moment& to, int splits) {
   constexpr double kStraight = 5e-6, kDepth = 1e-3;  // [rad] or [m]; the latter where it is only to tell how deep
   const JointGroup& group = t.group();
   const auto inside = [&](const VectorXd& q) {  // limits are checked elsewhere, with their own slack
@@ -282,28 +291,44 @@ void check_edges(Ledger& ledger, CollisionChecker& checker, const WholeBodyTraje
   if (r.free) return;
   const bool collides = r.fraction == 0 && checker.first_contact(begin);
   if (splits > 0 && edge.bend.maxCoeff() > (collides ? kDepth : kStraight)) {
-    check_edges(ledger, checker, t, from, middle, splits - 1);
-    check_edges(ledger, checker, t, middle, to, splits - 1);
+    find_meetings(meetings, checker, t, from, middle, splits - 1);
+    find_meetings(meetings, checker, t, middle, to, splits - 1);
     return;
   }
-  const VectorXd q = begin + r.fraction * (end - begin);
-  const double time = from.time + r.fraction * (to.time - from.time);
-  ledger.note(std::max(-checker.distance(q).value, 1e-9), time,
-              r.contact ? r.contact->a + " and " + r.contact->b : "limits");
+  meetings.push_back({from.time + r.fraction * (to.time - from.time), begin + r.fraction * (end - begin),
+                      r.contact ? r.contact->a + " and " + r.contact->b : "limits"});
+}
+
+std::vector<Meeting> meetings_in(const WholeBodyTrajectory& t, std::size_t interval, CollisionChecker& checker) {
+  constexpr int kMostSplits = 12;
+  std::vector<Meeting> meetings;
+  find_meetings(meetings, checker, t, {t.times()[interval], t.positions()[interval]},
+                {t.times()[interval + 1], t.positions()[interval + 1]}, kMostSplits);
+  return meetings;
 }
 
 void check_collisions(Ledger& ledger, const std::vector<CollisionChecker*>& checkers, const WholeBodyTrajectory& t) {
-  constexpr int kMostSplits = 12;
   if (checkers.empty()) return;
   ledger.open("collision", "m", 0);
   for (std::size_t i = 0; i + 1 < t.size(); ++i) {
     if (!checkers[i]) continue;
-    check_edges(ledger, *checkers[i], t, {t.times()[i], t.positions()[i]}, {t.times()[i + 1], t.positions()[i + 1]},
-                kMostSplits);
+    for (const Meeting& meeting : meetings_in(t, i, *checkers[i]))
+      ledger.note(std::max(-checkers[i]->distance(meeting.q).value, 1e-9), meeting.time, meeting.what);
   }
 }
 
 }  // namespace
+
+std::vector<std::pair<int, double>> detail::collision_places(const WholeBodyTrajectory& t,
+                                                             const std::vector<CollisionChecker*>& checkers) {
+  std::vector<std::pair<int, double>> places;
+  for (std::size_t i = 0; i < checkers.size(); ++i) {
+    if (!checkers[i]) continue;
+    for (const Meeting& meeting : meetings_in(t, i, *checkers[i]))
+      places.push_back({static_cast<int>(i), (meeting.time - t.times()[i]) / (t.times()[i + 1] - t.times()[i])});
+  }
+  return places;
+}
 
 std::vector<Violation> check_whole_body(const WholeBodyProblem& problem, const WholeBodyTrajectory& trajectory,
                                         const std::vector<CollisionChecker*>& checkers, int resolution_factor) {

@@ -123,7 +123,7 @@ TEST(ShortenDriveBy, IsNotHeldBackToWhereItWaited) {
 TEST(ShortenDriveBy, TriesToPartBodiesAsTheyWere) {
   StopAndGo plain;
   plain.up.tail(7) = test::vec({-0.4, -0.6, -0.9, 1.5, 0.0, 0.4, 0.0});
-  const StopAndGo c = round_a_pillar(1.0, 9, plain);
+  const StopAndGo c = round_a_pillar(1.0, 7, plain);
   ASSERT_TRUE(c.known_is_free());
   const DriveByResult r = shorten_drive_by(c.group, c.world, c.tasks, c.known);
   ASSERT_EQ(r.outcome, Outcome::solved) << r.report;

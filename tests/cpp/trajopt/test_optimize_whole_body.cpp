@@ -72,6 +72,29 @@ const Violation& violation(const WholeBodyResult& r, const std::string& kind) {
   throw InvalidInput(kind);
 }
 
+TEST(OptimizeWholeBody, SeesWhatItPassesBetweenTheSamplesOfAnInterval) {
+  // A pin of 4 mm in the way of a ball of 4 mm: a tenth of an interval is longer than both.
+  const JointGroup group = sliders(2);
+  const Robot ball =
+      group.robot().with_link("ball", "b", Pose::Identity(), {LinkShape{Sphere{0.002}, Pose::Identity()}});
+  const JointGroup carrier = ball.chain("base", "b").with_acceleration_limits(vec({2.0, 0.7}));
+  const WholeBodyProblem problem = between(carrier, vec({-0.4, 0.0}), vec({0.4, 0.0}), {4});
+  for (const double x : {-0.123, 0.0171, 0.139}) {
+    World world;
+    world.add("pin", Sphere{0.002}, pose_from_xyz_rpy({x, -0.0035, 0}, {0, 0, 0}));
+    CollisionChecker checker(carrier, world);
+    const WholeBodyGuess guess = straight(problem, {problem.start, problem.goal_lower}, 0.1);
+    const WholeBodyResult alone = optimize_whole_body(problem, guess);
+    bool seen = false, touches = false;
+    for (const VectorXd& q : alone.trajectory->sampled(9).positions) seen = seen || !checker.is_free(q);
+    for (const VectorXd& q : alone.trajectory->sampled(999).positions) touches = touches || !checker.is_free(q);
+    ASSERT_TRUE(touches && !seen) << "the straight motion has to pass it unseen";
+    const WholeBodyResult r = optimize_whole_body(problem, guess, {}, std::vector<CollisionChecker*>(4, &checker));
+    ASSERT_EQ(r.outcome, Outcome::solved) << r.message << " " << violation(r, "collision").value;
+    for (const VectorXd& q : r.trajectory->sampled(999).positions) EXPECT_TRUE(checker.is_free(q));
+  }
+}
+
 }  // namespace
 
 TEST(OptimizeWholeBody, SolvesTheExampleOfP1) {

@@ -23,7 +23,7 @@ using detail::GraspAssignment;
 using detail::SolveSettings;
 using Eigen::VectorXd;
 
-constexpr int kShortBudget = 40;       // iterations of a solve in the first round
+constexpr int kShortBudget = 80;       // iterations of a solve in the first round
 constexpr std::size_t kMoreSeeds = 2;  // sequences tried of each assignment once there is a motion to beat
 
 /// What blocks most of the configurations that reach a task: "; in 12 of 30 that do 'hand' touches 'table'".
@@ -153,7 +153,7 @@ class DriveBy {
   }
 
   /// Every sequence with a short iteration budget first: what can be solved mostly is within few iterations. Ways
-  /// around obstacles are sampled and along the reference path by turns, the second time the other way round.
+  /// around obstacles are along the reference path and sampled by turns, the second time the other way round.
   void solve_all(const GraspAssignment& assignment, DriveByResult& result) {
     int solutions = 0;
     const std::size_t most =
@@ -163,7 +163,7 @@ class DriveBy {
     for (std::size_t round = 0; round < rounds && solutions == 0; ++round) {
       for (std::size_t i = 0; i < most && !over(result); ++i) {
         const SolveSettings settings{round == 0 ? std::min(kShortBudget, budget) : budget, round > 0,
-                                     (i + round) % 2 == 1};
+                                     (i + round) % 2 == 0};
         if (solve_sequence(assignment, i, settings, result) && ++solutions >= options_.solutions) return;
       }
     }

@@ -10,7 +10,7 @@ namespace {
 using Eigen::VectorXd;
 
 constexpr double kStill = 0.02;  // speed of a tool whose pose is kept, along each axis at the waypoints [m/s]
-constexpr double kLonger = 1.1;  // factor on the time that the fingers need to close
+constexpr double kLonger = 1.1;  // factor on a dwell and on the time that the fingers need to close
 
 /// What a push-grasp asks of the way to a step.
 void keep_straight(SeededProblem& a, std::size_t segment, const DriveByStep& step, int candidate) {
@@ -79,6 +79,7 @@ SeededProblem DriveBySeeds::make(const ConfigurationSequence& sequence, int wayp
     if (steps_[t].way > 0) keep_straight(a, s, steps_[t], sequence[t].candidate);
     if (steps_[t].dwell <= 0) continue;
     a.problem.segments[++s].min_duration = steps_[t].dwell;
+    a.problem.segments[s].max_duration = kLonger * steps_[t].dwell;
     a.problem.tool.back().velocity_lower.setConstant(-kStill);
     a.problem.tool.back().velocity_upper.setConstant(kStill);
     for (int k = 0; k < dwell_intervals(steps_[t].dwell); ++k) {

@@ -11,7 +11,7 @@ import numpy as np
 from .. import _core
 from .._core import verify as checks
 from ..scenario.shapes import shape_to_dict
-from ..scenario.tray_section import WALL
+from ..scenario.tray_body import TrayBody
 from .premises import premises
 
 Plan = dict[str, Any]
@@ -67,11 +67,11 @@ def _trays(plan: Plan) -> Found:
     obstacles = {o["name"]: o for o in scenario["obstacles"]}
     for i, tray in enumerate(scenario["trays"]):
         where = f"scenario.trays[{i}]"
-        if min(tray["size"][:2]) <= 2 * WALL:
-            yield where, f"leaves no room between walls of {WALL} m"
+        measures, body = TrayBody.from_dict(tray), obstacles.get(f"tray {tray['name']}")
+        if rule := measures.fault():
+            yield where, rule
             continue
-        walls = [shape_to_dict(shape) for shape in _core.tray_shapes(tray["size"], WALL)]
-        body = obstacles.get(f"tray {tray['name']}")
+        walls = body["shapes"] if body and tray.get("own_body") else [shape_to_dict(s) for s in measures.shapes()]
         if body is None or not _same([body["pose"], body["shapes"]], [tray["pose"], walls]):
             yield where, "has no obstacle with its walls, pose and size"
 

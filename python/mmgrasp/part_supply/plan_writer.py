@@ -113,7 +113,7 @@ def scenario_to_dict(scenario: Scenario) -> dict[str, Any]:
             {
                 "name": t.tray.name,
                 "pose": pose_to_dict(t.tray.T_world_tray),
-                "size": t.tray.size.tolist(),
+                **(t.body.to_dict() if t.body else {"size": t.tray.size.tolist(), "own_body": True}),
                 "headings": _headings(t.tray),
                 "shares_headings": not t.tray.headings,
             }

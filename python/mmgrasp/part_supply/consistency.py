@@ -22,7 +22,7 @@ _RADIUS_SLACK = 1e-9  # [m]; smaller differences of discs are rounding, for plan
 def check_consistency(plan: Plan) -> list[checks.Fault]:
     """Faults of a solved plan whose form is that of the schema."""
     rules = (
-        *(_hand, _options, _trays, _grid, _regions, _intersections, _stops, _counts),
+        *(_hand, _options, _trays, _chosen, _grid, _regions, _intersections, _stops, _counts),
         *(_route, _in_passing, _answer, _premises),
     )
     return [checks.Fault("wrong-values", where, message) for rule in rules for where, message in rule(plan)]
@@ -71,9 +71,32 @@ def _trays(plan: Plan) -> Found:
         if rule := measures.fault():
             yield where, rule
             continue
-        walls = body["shapes"] if body and tray.get("own_body") else [shape_to_dict(s) for s in measures.shapes()]
-        if body is None or not _same([body["pose"], body["shapes"]], [tray["pose"], walls]):
+        walls = [shape_to_dict(shape) for shape in measures.shapes()]
+        if tray.get("own_body"):  # then what holds the parts may be any obstacles
+            if body is not None and not _same(body["pose"], tray["pose"]):
+                yield where, "stands elsewhere than the obstacle of its name"
+        elif body is None or not _same([body["pose"], body["shapes"]], [tray["pose"], walls]):
             yield where, "has no obstacle with its walls, pose and size"
+
+
+def _chosen(plan: Plan) -> Found:
+    """Of parts asked for by number as many are picked as were asked for."""
+    parts = {part["name"]: part for part in plan["scenario"]["parts"]}
+    for i, tray in enumerate(plan["scenario"]["trays"]):
+        own = {name for name, part in parts.items() if part["tray"] == tray["name"]}
+        wanted = tray.get("wanted", {})
+        for kind, row in wanted.items():
+            where = f"scenario.trays[{i}].wanted.{kind}"
+            if len(set(row["of"])) != len(row["of"]) or not own.issuperset(row["of"]):
+                yield where, "must name parts of the tray, each once"
+                continue
+            picked = sum(parts[name]["target"] for name in row["of"])
+            if picked != row["count"]:
+                yield where, f"{row['count']} parts are asked for, {picked} are to be picked"
+        named = {name for row in wanted.values() for name in row["of"]}
+        others = [name for name in own - named if parts[name]["target"]]
+        if wanted and others:
+            yield f"scenario.trays[{i}].wanted", f"{min(others)} is to be picked, which is not asked for"
 
 
 def _grid(plan: Plan) -> Found:

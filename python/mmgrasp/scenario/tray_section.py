@@ -44,6 +44,14 @@ class TraySetup:
     """Where the parts come from, unless they were typed."""
     body: TrayBody | None = None
     """Its measures; None: it has a body of its own."""
+    wanted: dict[str, int] = field(default_factory=dict)
+    """How many parts of which type are picked, any of them; empty: `targets` are. Until they are chosen all parts of these types are targets."""
+    kinds: dict[str, str] = field(default_factory=dict)
+    """Type of each typed part, by its name."""
+
+    def of_kind(self, kind: str) -> list[str]:
+        """Names of the parts of a type."""
+        return [name for name, own in self.kinds.items() if own == kind]
 
 
 def read_part_types(node: Node, gripper: Hand) -> dict[str, PartType]:
@@ -124,14 +132,31 @@ def read_tray(node: Node, types: dict[str, PartType], gripper: Hand, scans: Scan
     if ("parts" in node) == ("scan" in node):
         node.fail("must have either parts or scan")
     headings = node["headings"].numbers() if "headings" in node else []
-    scan = None
+    scan, wanted, kinds = None, {}, {}
     if "scan" in node:
         _check_scannable(node, T_world_tray, body)
         parts, targets, scan = _scanned(node, types, name, T_world_tray, list(body.size), scans)
     else:
-        parts, targets = _typed(node, types, name, T_world_tray, None if own else body, gripper)
+        placed = _placed(node["parts"], types)
+        kinds = {f"{name}/{part}": kind for part, kind, _ in placed}
+        wanted = _wanted(node, list(kinds.values()))
+        parts, targets = _typed(node, types, name, T_world_tray, None if own else body, gripper, placed, wanted)
     tray = Tray(name, T_world_tray, body.size, parts, headings)
-    return TraySetup(tray, shapes, targets, scan, None if own else body)
+    return TraySetup(tray, shapes, targets, scan, None if own else body, wanted, kinds)
+
+
+def _wanted(node: Node, kinds: list[str]) -> dict[str, int]:
+    """Parts asked for by number: a mapping from type to number in `targets`."""
+    if "targets" not in node or not isinstance(node["targets"].raw, dict):
+        return {}
+    wanted = {}
+    for kind, entry in node["targets"].items():
+        if kind not in kinds:
+            entry.refuse_key(list(dict.fromkeys(kinds)))
+        wanted[kind] = entry.integer(least=1)
+        if wanted[kind] > kinds.count(kind):
+            entry.fail(f"the tray holds no more than {kinds.count(kind)} of type {kind}")
+    return wanted
 
 
 def _check_scannable(node: Node, T_world_tray: np.ndarray, body: TrayBody) -> None:
@@ -181,11 +206,21 @@ def _placed(node: Node, types: dict[str, PartType]) -> list[Placed]:
 
 
 def _typed(
-    node: Node, types: dict[str, PartType], name: str, T_world_tray: np.ndarray, body: TrayBody | None, gripper: Hand
+    node: Node,
+    types: dict[str, PartType],
+    name: str,
+    T_world_tray: np.ndarray,
+    body: TrayBody | None,
+    gripper: Hand,
+    placed: list[Placed],
+    wanted: dict[str, int],
 ) -> tuple[list[Part], list[str]]:
-    placed = _placed(node["parts"], types)
     names = [f"{name}/{own}" for own, _, _ in placed]
-    targets = _targets(node, names, [own for own, _, _ in placed])
+    targets = (
+        [full for full, (_, kind, _) in zip(names, placed, strict=True) if kind in wanted]
+        if wanted
+        else _targets(node, names, [own for own, _, _ in placed])
+    )
     parts = []
     for full, (_, kind, T_tray_part) in zip(names, placed, strict=True):
         if body is not None:
@@ -261,6 +296,10 @@ def _list(node: Node, types: dict[str, PartType]) -> list[Placed]:
 def _targets(node: Node, names: list[str], own: list[str]) -> list[str]:
     if "targets" not in node or node["targets"].raw == "all":
         return list(names)
+    if isinstance(node["targets"].raw, dict):
+        node["targets"].fail(
+            "must be all or a list of parts: objects of a scan have no types" if "scan" in node else "must name a type"
+        )
     chosen: list[str] = []
     for entry in node["targets"].elements():
         if isinstance(entry.raw, str):

@@ -141,7 +141,11 @@ def _add_check(commands: Commands) -> None:
     parser.add_argument("urdf", type=_path, help="a URDF, or a .xacro file that expands to one")
     parser.add_argument("--srdf", type=_path, metavar="FILE")
     _add_robot_files(parser)
-    parser.add_argument("--base", choices=["fixed", "diff_drive", "omni"], default="fixed")
+    parser.add_argument(
+        "--base",
+        choices=["fixed", "diff_drive", "omni"],
+        help="how it drives (default: as its wheels tell; fixed without any)",
+    )
     parser.add_argument(
         "--mesh-tolerance",
         type=_length,

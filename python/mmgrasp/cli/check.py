@@ -12,15 +12,18 @@ from typing import Any
 from .. import _core
 from .._core import InvalidInput, Robot
 from .._progress import Progress
+from .planning_needs import base_by_wheels, planning_needs
 
 
 @dataclass
 class RobotCheck:
-    """Findings about one robot. `problems` are what keeps it from being planned for."""
+    """Findings about one robot. `problems` are what keeps any motion of it from being planned, `missing` a whole round of part supply."""
 
     robot: Robot
     sampled: Robot  # the same with its disabled pairs computed
+    found: list[str]
     problems: list[str]
+    missing: list[str]
     doubts: list[str]
     always: list[tuple[str, str]]
     never: int
@@ -28,14 +31,25 @@ class RobotCheck:
 
     @property
     def ok(self) -> bool:
-        """No problem was found; doubts do not count."""
+        """Motions of the arm can be planned, where the base is fixed, and whole rounds, where it drives; doubts and what a scenario can add (a
+        hand) do not count."""
         return not self.problems
+
+    @property
+    def verdict(self) -> str:
+        """What can be planned for it, in one line."""
+        if self.problems:
+            return "cannot be planned for"
+        if self.missing:
+            return "can be planned for: motions of its joints; a whole round needs what is missing above"
+        return "can be planned for: motions of its joints and whole rounds"
 
     def to_dict(self) -> dict[str, Any]:
         """Plain values, as `mmgrasp check --json` prints them."""
         robot = self.robot
         return {
             "ok": self.ok,
+            "verdict": self.verdict,
             "name": robot.name,
             "links": len(robot.links),
             "joints": robot.joint_table,
@@ -43,7 +57,9 @@ class RobotCheck:
             "end_effectors": robot.end_effectors,
             "base": robot.base,
             "report": robot.report,
+            "found": self.found,
             "problems": self.problems,
+            "missing": self.missing,
             "doubts": self.doubts,
             "pairs": {"all": self.pairs, "never": self.never, "always": self.always},
         }
@@ -61,33 +77,33 @@ def check_robot(
     urdf: str | os.PathLike[str],
     srdf: str | os.PathLike[str] | None = None,
     package_dirs: Mapping[str, str] | None = None,
-    base: str = "fixed",
+    base: str | None = None,
     progress: Progress = None,
     mesh_tolerance: float = 0.0,
     xacro_args: Mapping[str, Any] | None = None,
 ) -> RobotCheck:
-    """Reads a robot as far as possible: missing meshes are listed, not refused."""
-    robot = Robot.load(
-        urdf,
-        srdf,
-        dict(package_dirs or {}),
-        base,
-        allow_missing_meshes=True,
-        mesh_tolerance=mesh_tolerance,
-        xacro_args=xacro_args,
-    )
+    """Reads a robot as far as possible: missing meshes are listed, not refused. `base` None: as its wheels tell, else fixed."""
+
+    def read(kind: str) -> Robot:
+        return Robot.load(
+            urdf,
+            srdf,
+            dict(package_dirs or {}),
+            kind,
+            allow_missing_meshes=True,
+            mesh_tolerance=mesh_tolerance,
+            xacro_args=xacro_args,
+        )
+
+    robot = read(base or "fixed")
+    if base is None and (told := base_by_wheels(robot)) is not None:
+        robot = read(told)
     problems = [f"mesh not found: {uri}" for uri in robot.report["missing"]]
     if not robot.joints:
         problems.append("no movable joint")
     if not any(robot.collisions(link) for link in robot.links):
         problems.append("no link has a collision shape: collisions cannot be checked")
-    for joint in robot.joint_table:
-        if (
-            joint["type"] in ("revolute", "prismatic")
-            and not joint["upper"] > joint["lower"]
-            and joint["mimic"] is None
-        ):
-            problems.append(f"joint {joint['name']}: limits [{joint['lower']:g}, {joint['upper']:g}] leave no room")
+    needs = planning_needs(robot)
     sampled = robot if robot.report["missing"] else _core.with_sampled_pairs(robot, progress=progress)
     reasons = sampled.disabled_pairs
     shaped = sum(1 for link in robot.links if robot.collisions(link))
@@ -96,8 +112,10 @@ def check_robot(
     return RobotCheck(
         robot,
         sampled,
-        problems,
-        [*robot.report["warnings"], *_doubts(robot)],
+        needs.found,
+        [*problems, *needs.problems],
+        needs.missing,
+        [*robot.report["warnings"], *_doubts(robot), *needs.doubts],
         always,
         never,
         shaped * (shaped - 1) // 2,
@@ -164,7 +182,9 @@ def describe(check: RobotCheck) -> str:
     lines += [_mesh_line(mesh) for mesh in robot.report["meshes"]]
     lines.append(f"pairs      {check.never} of {check.pairs} link pairs never touch, {len(check.always)} always touch")
     lines += [f"always     {a} and {b} touch in every configuration" for a, b in check.always]
+    lines[1:1] = check.found
     lines += [f"doubt      {doubt}" for doubt in check.doubts]
+    lines += [f"missing    for a whole round: {need}" for need in check.missing]
     lines += [f"problem    {problem}" for problem in check.problems]
-    lines.append("can be planned for" if check.ok else "cannot be planned for")
+    lines.append(check.verdict)
     return "\n".join(lines)

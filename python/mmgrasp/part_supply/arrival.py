@@ -20,6 +20,7 @@ from .._files import write_files
 from .._progress import Progress
 from ..documents.reading import read_json
 from ..scenario import Scenario, load_scenario
+from .chosen_parts import chosen_as
 from .plan_file import check_form
 from .plan_writer import pick_to_dict, scenario_to_dict
 from .planning import ScenarioPlan, file_name
@@ -171,7 +172,7 @@ def _read(
     check_form(root)
     content = root.raw
     source = content["scenario"]["source"] if scenario is None else os.fspath(scenario)
-    loaded = load_scenario(source, robot=robot, progress=progress)
+    loaded = chosen_as(load_scenario(source, robot=robot, progress=progress), content)
     changed = differences(content["scenario"], scenario_to_dict(loaded), limit=1)
     if changed:
         raise InvalidInput(f"{source}: is not what {_name(plan)} was planned for: scenario{changed[0][0]} differs")

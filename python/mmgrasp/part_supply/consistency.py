@@ -11,7 +11,7 @@ import numpy as np
 from .. import _core
 from .._core import verify as checks
 from ..scenario.shapes import shape_to_dict
-from ..scenario.tray_section import WALL
+from ..scenario.tray_body import TrayBody
 from .premises import premises
 
 Plan = dict[str, Any]
@@ -22,7 +22,7 @@ _RADIUS_SLACK = 1e-9  # [m]; smaller differences of discs are rounding, for plan
 def check_consistency(plan: Plan) -> list[checks.Fault]:
     """Faults of a solved plan whose form is that of the schema."""
     rules = (
-        *(_hand, _options, _trays, _grid, _regions, _intersections, _stops, _counts),
+        *(_hand, _options, _trays, _chosen, _grid, _regions, _intersections, _stops, _counts),
         *(_route, _in_passing, _answer, _premises),
     )
     return [checks.Fault("wrong-values", where, message) for rule in rules for where, message in rule(plan)]
@@ -67,13 +67,36 @@ def _trays(plan: Plan) -> Found:
     obstacles = {o["name"]: o for o in scenario["obstacles"]}
     for i, tray in enumerate(scenario["trays"]):
         where = f"scenario.trays[{i}]"
-        if min(tray["size"][:2]) <= 2 * WALL:
-            yield where, f"leaves no room between walls of {WALL} m"
+        measures, body = TrayBody.from_dict(tray), obstacles.get(f"tray {tray['name']}")
+        if rule := measures.fault():
+            yield where, rule
             continue
-        walls = [shape_to_dict(shape) for shape in _core.tray_shapes(tray["size"], WALL)]
-        body = obstacles.get(f"tray {tray['name']}")
-        if body is None or not _same([body["pose"], body["shapes"]], [tray["pose"], walls]):
+        walls = [shape_to_dict(shape) for shape in measures.shapes()]
+        if tray.get("own_body"):  # then what holds the parts may be any obstacles
+            if body is not None and not _same(body["pose"], tray["pose"]):
+                yield where, "stands elsewhere than the obstacle of its name"
+        elif body is None or not _same([body["pose"], body["shapes"]], [tray["pose"], walls]):
             yield where, "has no obstacle with its walls, pose and size"
+
+
+def _chosen(plan: Plan) -> Found:
+    """Of parts asked for by number as many are picked as were asked for."""
+    parts = {part["name"]: part for part in plan["scenario"]["parts"]}
+    for i, tray in enumerate(plan["scenario"]["trays"]):
+        own = {name for name, part in parts.items() if part["tray"] == tray["name"]}
+        wanted = tray.get("wanted", {})
+        for kind, row in wanted.items():
+            where = f"scenario.trays[{i}].wanted.{kind}"
+            if len(set(row["of"])) != len(row["of"]) or not own.issuperset(row["of"]):
+                yield where, "must name parts of the tray, each once"
+                continue
+            picked = sum(parts[name]["target"] for name in row["of"])
+            if picked != row["count"]:
+                yield where, f"{row['count']} parts are asked for, {picked} are to be picked"
+        named = {name for row in wanted.values() for name in row["of"]}
+        others = [name for name in own - named if parts[name]["target"]]
+        if wanted and others:
+            yield f"scenario.trays[{i}].wanted", f"{min(others)} is to be picked, which is not asked for"
 
 
 def _grid(plan: Plan) -> Found:

@@ -113,9 +113,10 @@ def scenario_to_dict(scenario: Scenario) -> dict[str, Any]:
             {
                 "name": t.tray.name,
                 "pose": pose_to_dict(t.tray.T_world_tray),
-                "size": t.tray.size.tolist(),
+                **(t.body.to_dict() if t.body else {"size": t.tray.size.tolist(), "own_body": True}),
                 "headings": _headings(t.tray),
                 "shares_headings": not t.tray.headings,
+                **({"wanted": wanted} if (wanted := _wanted(t)) else {}),
             }
             for t in scenario.trays
         ],
@@ -125,6 +126,11 @@ def scenario_to_dict(scenario: Scenario) -> dict[str, Any]:
         **scenario.rules.to_dict(),
         "reach": {key: scenario.reach.get(key, default) for key, (default, _) in _reach_options().items()},
     }
+
+
+def _wanted(tray: TraySetup) -> dict[str, Any]:
+    """By type how many parts were asked for, and which there are to choose from."""
+    return {kind: {"count": count, "of": tray.of_kind(kind)} for kind, count in sorted(tray.wanted.items())}
 
 
 def _finger_ends(gripper: Hand) -> list[dict[str, Any]]:

@@ -15,9 +15,12 @@ from .._core import InvalidInput, Outcome, PartSupplyPlan, PartSupplyProblem, Re
 from .._files import write_file, write_files
 from .._progress import Progress
 from ..scenario import Scenario, load_scenario
+from .chosen_parts import by_number, choose_parts, others_will_do
 from .plan_writer import plan_to_dict, scenario_to_dict
 from .premises import Premises, premises
 from .round_motion import RoundMotion
+
+_MOST_CHOICES = 5  # choices of parts asked for by number that are planned for
 
 
 def file_name(name: str) -> str:
@@ -155,4 +158,23 @@ def plan_part_supply(
     loaded = time.perf_counter()
     reach = scenario.reach_database(progress)
     timings = [("scenario", loaded - begun), ("reach database", time.perf_counter() - loaded)]
+    if by_number(scenario):
+        return _plan_by_number(scenario, reach, timings, progress)
     return ScenarioPlan(scenario, _core.plan_part_supply(problem, reach, progress=progress), timings)
+
+
+def _plan_by_number(
+    scenario: Scenario, reach: ReachDatabase, timings: list[tuple[str, float]], progress: Progress
+) -> ScenarioPlan:
+    """Chooses the parts that were asked for by number and plans; parts that cannot be picked are left where others of their type are there."""
+    left: set[str] = set()
+    for tries in range(_MOST_CHOICES):
+        begun = time.perf_counter()
+        chosen = choose_parts(scenario, reach, left, progress)
+        timings.append(("parts by number", time.perf_counter() - begun))
+        plan = ScenarioPlan(chosen, _core.plan_part_supply(chosen.problem(), reach, progress=progress), timings)
+        failed = others_will_do(chosen, (o.part for o in plan.obstructions if o.part)) - left
+        if plan.outcome in (Outcome.solved, Outcome.stopped) or not failed or tries + 1 == _MOST_CHOICES:
+            return plan
+        left |= failed
+    raise AssertionError("the last choice was returned")

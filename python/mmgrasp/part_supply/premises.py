@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, TypedDict
+from typing import Any, NotRequired, TypedDict
 
 
 class Premises(TypedDict):
@@ -18,13 +18,17 @@ class Premises(TypedDict):
     ik_seeds: int  # configurations of the database refined for each grasp and base pose
     database: dict[str, Any]  # options of the reachability database, as the scenario has them
     search_finished: bool  # the proof was
+    chosen_parts: NotRequired[
+        int
+    ]  # so many were asked for by number and chosen before: other choices may do with fewer stops
 
 
 def premises(plan: dict[str, Any]) -> Premises:
     """The section `premises` of a plan.json, from its sections `scenario`, `grid` and `proven_minimal`."""
     scenario = plan["scenario"]
     options, reach = scenario["options"], scenario["reach"]
-    return {
+    chosen = sum(row["count"] for tray in scenario["trays"] for row in tray.get("wanted", {}).values())
+    known: Premises = {
         "headings": {tray["name"]: tray["headings"] for tray in scenario["trays"]},
         "shared_headings": any(tray["shares_headings"] for tray in scenario["trays"]),
         "positioning_uncertainty": scenario["positioning_uncertainty"],
@@ -35,6 +39,7 @@ def premises(plan: dict[str, Any]) -> Premises:
         "database": dict(reach),
         "search_finished": plan["proven_minimal"],
     }
+    return {**known, "chosen_parts": chosen} if chosen else known
 
 
 def premises_text(said: Premises) -> str:
@@ -49,6 +54,8 @@ def premises_text(said: Premises) -> str:
         f"discs of {said['positioning_uncertainty']:g} m",
         f"{said['grasps']} grasps",
     ]
+    if "chosen_parts" in said:
+        known.append(f"the {said['chosen_parts']} parts chosen of those asked for by number")
     if "samples" in said["database"]:
         known.append(f"arm postures sought from a database of {said['database']['samples']:,} draws")
     return "for " + ", ".join(known)

@@ -14,6 +14,7 @@ from .._options import CheckOptions
 from .._progress import Progress
 from ..documents.reading import Document, read_json
 from ..scenario import load_scenario
+from .chosen_parts import chosen_as
 from .consistency import check_consistency
 from .plan_file import check_form
 from .plan_reader import allowed_collisions, plan_to_check
@@ -84,7 +85,7 @@ def verify_plan(
     to_check = plan_to_check(root)
     faults = check_consistency(root.raw) + check_scans(root)
     if scenario is not None:
-        expected = scenario_to_dict(load_scenario(scenario, robot=robot, progress=progress))
+        expected = scenario_to_dict(chosen_as(load_scenario(scenario, robot=robot, progress=progress), root.raw))
         if "urdfs" not in root["scenario"]["robot"]:  # a plan from before these were kept
             del expected["robot"]["urdfs"], expected["robot"]["links"]
         faults += [_changed(path, was, now) for path, was, now in differences(root["scenario"].raw, expected)]

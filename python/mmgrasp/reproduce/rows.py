@@ -140,6 +140,9 @@ def draw_distance(result: dict[str, Any]) -> Figure:
     fig, (axis,) = figure(6.0, 3.6)
     x = [row["key"]["distance [m]"] for row in result["rows"]]
     paper_and_ours(axis, x, result["rows"], "radius [m]")
+    for algorithm, radii in stored_regions.radii(result["rows"]).items():
+        axis.plot(x, radii, "--", marker="s", markersize=3, linewidth=1, label=algorithm)
+    axis.legend(fontsize=8)
     axis.axhline(result["drawing"]["limit"], color="#b8405e", linewidth=1)
     axis.annotate("needed: the positioning uncertainty", (0.3, 0.085), color="#b8405e", fontsize=8)
     axis.axvline(0.8, color="#8a8f98", linestyle="--", linewidth=1)

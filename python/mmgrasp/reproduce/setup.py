@@ -31,7 +31,7 @@ from .._files import shipped
 from .._progress import Progress
 from ..documents.reading import read_yaml
 from ..scenario.robot_section import RobotSetup, choose_sections, read_setup
-from ..scenario.tray_section import WALL
+from ..scenario.tray_body import WALL
 
 UNCERTAINTY = 0.10  # P1 3.7.1 [m]
 RESOLUTION = 0.05  # P1 3.6 [m]

@@ -20,6 +20,7 @@ from .._progress import Progress
 from .entry import Context, Result
 from .setup import ChecksAtBase, Row, database, reach_samples
 
+_RADIUS = ": radius (m)"  # the end of a column's name
 FINDING = "Algorithm 4 is P1's:"
 REDUNDANT_VALUES = (12, 96)  # of the seventh joint; the many where the few give no free configuration
 ROUND = 8  # configurations of a pose that are checked together before the next ones are looked at
@@ -55,7 +56,7 @@ class Papers:
             values[f"{head}: cells"] = (None, ours["cells"])
             values[f"{head}: not exact"] = (None, ours["false"] / ours["cells"] if ours["cells"] else None)
             values[f"{head}: missed"] = (None, ours["missed"] / ours["exact"] if ours["exact"] else None)
-            values[f"{head}: radius (m)"] = (None, ours["radius"])
+            values[f"{head}{_RADIUS}"] = (None, ours["radius"])
             values[f"{head}: time (s)"] = (None, ours["seconds"])
 
     def describe(self) -> dict[str, Any]:
@@ -81,6 +82,12 @@ class Papers:
         if len(self.found) > 1:
             missed = [sum(ours["missed"] for ours in rows) for rows in self.found]
             result.trend("a denser database lets Algorithm 4 miss fewer cells (lemma 1)", missed[-1] < missed[0])
+
+
+def radii(rows: Sequence[dict[str, Any]]) -> dict[str, list[float]]:
+    """Of a table's rows the radius that Algorithm 4 gives at each density, by the name of its columns."""
+    names = [name for name in rows[0]["values"] if name.endswith(_RADIUS)]
+    return {name.removesuffix(_RADIUS): [row["values"][name]["ours"] for row in rows] for name in names}
 
 
 def densities(quick: bool) -> list[Density]:

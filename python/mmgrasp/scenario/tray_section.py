@@ -14,8 +14,8 @@ from ..documents.reading import Node, near_miss
 from .robot_section import find_file
 from .scan_section import ScanReader, TrayScan, moved
 from .shapes import read_shapes
+from .tray_body import BODY_KEYS, STEEPEST, WALL, TrayBody, read_tray_body, tilt
 
-WALL = 0.005  # thickness of a tray's floor and walls [m]
 GAP = 0.001  # parts rest this far above the floor, so that nothing touches at rest [m]
 
 
@@ -42,6 +42,16 @@ class TraySetup:
     targets: list[str] = field(default_factory=list)
     scan: TrayScan | None = None
     """Where the parts come from, unless they were typed."""
+    body: TrayBody | None = None
+    """Its measures; None: it has a body of its own."""
+    wanted: dict[str, int] = field(default_factory=dict)
+    """How many parts of which type are picked, any of them; empty: `targets` are. Until they are chosen all parts of these types are targets."""
+    kinds: dict[str, str] = field(default_factory=dict)
+    """Type of each typed part, by its name."""
+
+    def of_kind(self, kind: str) -> list[str]:
+        """Names of the parts of a type."""
+        return [name for name, own in self.kinds.items() if own == kind]
 
 
 def read_part_types(node: Node, gripper: Hand) -> dict[str, PartType]:
@@ -114,20 +124,50 @@ def _check_they_hold(node: Node, name: str, shapes: list[LinkShape], grasps: lis
 
 def read_tray(node: Node, types: dict[str, PartType], gripper: Hand, scans: ScanReader) -> TraySetup:
     """One tray of the section `trays`."""
-    node.mapping("name pose size", "parts scan headings targets")
-    name, T_world_tray, size = node["name"].label(), node["pose"].pose(), node["size"].numbers(3, above=0)
-    if T_world_tray[2, 2] < 1 - 1e-9:
-        node["pose"].fail("a tray must stand level (roll and pitch 0)")
-    if min(size[:2]) <= 2 * WALL:
-        node["size"].fail(f"must leave room between walls of {WALL} m")
+    node.mapping("name pose size", f"parts scan headings targets {BODY_KEYS}")
+    name, T_world_tray = node["name"].label(), node["pose"].pose()
+    body, shapes, own = read_tray_body(node, find_file)
+    if tilt(T_world_tray) > STEEPEST:
+        node["pose"].fail(f"a tray must not be tilted by more than {STEEPEST:g} degrees")
     if ("parts" in node) == ("scan" in node):
         node.fail("must have either parts or scan")
     headings = node["headings"].numbers() if "headings" in node else []
+    scan, wanted, kinds = None, {}, {}
     if "scan" in node:
-        parts, targets, scan = _scanned(node, types, name, T_world_tray, size, scans)
+        _check_scannable(node, T_world_tray, body)
+        parts, targets, scan = _scanned(node, types, name, T_world_tray, list(body.size), scans)
     else:
-        (parts, targets), scan = _typed(node, types, name, T_world_tray, size, gripper), None
-    return TraySetup(Tray(name, T_world_tray, size, parts, headings), _core.tray_shapes(size, WALL), targets, scan)
+        placed = _placed(node["parts"], types)
+        kinds = {f"{name}/{part}": kind for part, kind, _ in placed}
+        wanted = _wanted(node, list(kinds.values()))
+        parts, targets = _typed(node, types, name, T_world_tray, None if own else body, gripper, placed, wanted)
+    tray = Tray(name, T_world_tray, body.size, parts, headings)
+    return TraySetup(tray, shapes, targets, scan, None if own else body, wanted, kinds)
+
+
+def _wanted(node: Node, kinds: list[str]) -> dict[str, int]:
+    """Parts asked for by number: a mapping from type to number in `targets`."""
+    if "targets" not in node or not isinstance(node["targets"].raw, dict):
+        return {}
+    wanted = {}
+    for kind, entry in node["targets"].items():
+        if kind not in kinds:
+            entry.refuse_key(list(dict.fromkeys(kinds)))
+        wanted[kind] = entry.integer(least=1)
+        if wanted[kind] > kinds.count(kind):
+            entry.fail(f"the tray holds no more than {kinds.count(kind)} of type {kind}")
+    return wanted
+
+
+def _check_scannable(node: Node, T_world_tray: np.ndarray, body: TrayBody) -> None:
+    """A map's objects are parted by a level floor and walls of the usual thickness."""
+    if T_world_tray[2, 2] < 1 - 1e-9:
+        node["pose"].fail("a scanned tray must stand level (roll and pitch 0)")
+    for key in BODY_KEYS.split():
+        if key in node:
+            node[key].fail("a scanned tray is an open box with the usual walls")
+    if body != TrayBody(body.size):
+        node["size"].fail("a scanned tray is an open box with the usual walls: give its outer size as numbers")
 
 
 def _scanned(
@@ -166,14 +206,25 @@ def _placed(node: Node, types: dict[str, PartType]) -> list[Placed]:
 
 
 def _typed(
-    node: Node, types: dict[str, PartType], name: str, T_world_tray: np.ndarray, size: list[float], gripper: Hand
+    node: Node,
+    types: dict[str, PartType],
+    name: str,
+    T_world_tray: np.ndarray,
+    body: TrayBody | None,
+    gripper: Hand,
+    placed: list[Placed],
+    wanted: dict[str, int],
 ) -> tuple[list[Part], list[str]]:
-    placed = _placed(node["parts"], types)
     names = [f"{name}/{own}" for own, _, _ in placed]
-    targets = _targets(node, names, [own for own, _, _ in placed])
+    targets = (
+        [full for full, (_, kind, _) in zip(names, placed, strict=True) if kind in wanted]
+        if wanted
+        else _targets(node, names, [own for own, _, _ in placed])
+    )
     parts = []
     for full, (_, kind, T_tray_part) in zip(names, placed, strict=True):
-        _check_inside(node, full, types[kind], T_tray_part, size)
+        if body is not None:
+            _check_inside(node, full, types[kind], T_tray_part, body)
         if full in targets:
             _check_graspable(full, types[kind], gripper)
         parts.append(
@@ -245,6 +296,10 @@ def _list(node: Node, types: dict[str, PartType]) -> list[Placed]:
 def _targets(node: Node, names: list[str], own: list[str]) -> list[str]:
     if "targets" not in node or node["targets"].raw == "all":
         return list(names)
+    if isinstance(node["targets"].raw, dict):
+        node["targets"].fail(
+            "must be all or a list of parts: objects of a scan have no types" if "scan" in node else "must name a type"
+        )
     chosen: list[str] = []
     for entry in node["targets"].elements():
         if isinstance(entry.raw, str):
@@ -262,15 +317,17 @@ def _targets(node: Node, names: list[str], own: list[str]) -> list[str]:
     return chosen
 
 
-def _check_inside(node: Node, name: str, kind: PartType, T: np.ndarray, size: list[float]) -> None:
+def _check_inside(node: Node, name: str, kind: PartType, T: np.ndarray, body: TrayBody) -> None:
     low, high = _bounds(kind, T)
-    inner = np.array(size[:2]) / 2 - WALL
+    inner = body.inner / 2
     if (low[:2] < -inner).any() or (high[:2] > inner).any():
         node["parts"].fail(
             f"part {name} reaches through the tray's wall (inner size {2 * inner[0]:g} x {2 * inner[1]:g} m)"
         )
     if low[2] <= 0:
         node["parts"].fail(f"part {name} reaches {-low[2]:.4g} m through the tray's floor")
+    if body.roof is not None and high[2] >= body.roof:
+        node["parts"].fail(f"part {name} reaches {high[2] - body.roof:.4g} m through the tray's roof")
 
 
 def _check_graspable(name: str, kind: PartType, gripper: Hand) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import fcntl
 import json
 import os
 import shutil
@@ -17,7 +18,16 @@ from typing import Any
 import pytest
 
 import mmgrasp as mg
-from mmgrasp._files import check_file, check_folder, printable, read_text, write_file, write_result
+from mmgrasp._files import (
+    check_file,
+    check_folder,
+    draft_folder,
+    printable,
+    read_text,
+    remove_dead_drafts,
+    write_file,
+    write_result,
+)
 from mmgrasp.cli.output_folder import LIST, OutputFolder
 
 
@@ -392,3 +402,38 @@ def test_a_cache_folder_that_is_not_absolute_is_ignored(tmp_path: Path, monkeypa
     monkeypatch.setenv("XDG_CACHE_HOME", "relative")
     monkeypatch.setenv("HOME", str(tmp_path))
     assert mg.base.cache_folder() == str(tmp_path / ".cache" / "mmgrasp")
+
+
+@pytest.mark.parametrize("moment", ["before it is opened", "before it is locked"])
+def test_a_draft_that_is_not_locked_yet_may_be_taken_for_a_dead_one(
+    moment: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Another run that begins in that moment removes it: the next is taken, and that one stays."""
+    removed = []
+
+    def other_run_begins() -> None:
+        monkeypatch.undo()
+        remove_dead_drafts(tmp_path)
+        removed.append(not list(tmp_path.iterdir()))
+
+    made, locked = tempfile.mkdtemp, fcntl.flock
+
+    def make(**where: Any) -> str:
+        folder = made(**where)
+        other_run_begins()
+        return folder
+
+    def lock(handle: int, how: int) -> None:
+        other_run_begins()
+        locked(handle, how)
+
+    if moment == "before it is opened":
+        monkeypatch.setattr(tempfile, "mkdtemp", make)
+    else:
+        monkeypatch.setattr(fcntl, "flock", lock)
+    with draft_folder(tmp_path) as draft:
+        assert removed == [True]
+        remove_dead_drafts(tmp_path)
+        assert draft.is_dir()
+        (draft / "plan.json").write_text("ours")
+    assert not list(tmp_path.iterdir())

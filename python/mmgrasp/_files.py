@@ -95,20 +95,40 @@ def draft_folder(within: Path) -> Iterator[Path]:
 
     Goes also where no more files can be opened: the lock's handle is given back first. Raises OSError.
     """
-    draft = Path(tempfile.mkdtemp(dir=within, prefix=DRAFT))
-    handle = None
+    draft, handle = _locked_draft(within)
     try:
-        handle = os.open(draft, os.O_RDONLY | os.O_DIRECTORY)
-        with contextlib.suppress(OSError):  # a file system without locks
-            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
         yield draft
     finally:
-        if handle is not None:
-            os.close(handle)
+        os.close(handle)
         for folder, _, files in os.walk(draft, topdown=False):  # one handle at a time, unlike shutil.rmtree
-            for name in files:
-                os.unlink(os.path.join(folder, name))
-            os.rmdir(folder)
+            with contextlib.suppress(FileNotFoundError):  # no longer locked: another run may remove it, too
+                for name in files:
+                    os.unlink(os.path.join(folder, name))
+                os.rmdir(folder)
+
+
+def _locked_draft(within: Path) -> tuple[Path, int]:
+    """A new folder and the handle that holds its lock. Until it is locked another run may take it for a dead one and remove it: then the next is tried."""
+    while True:
+        draft = Path(tempfile.mkdtemp(dir=within, prefix=DRAFT))
+        try:
+            handle = os.open(draft, os.O_RDONLY | os.O_DIRECTORY)
+        except FileNotFoundError:
+            continue
+        except BaseException:
+            draft.rmdir()
+            raise
+        try:
+            with contextlib.suppress(OSError):  # a file system without locks
+                fcntl.flock(handle, fcntl.LOCK_EX)
+            if draft.is_dir():  # nobody removes it any more
+                return draft, handle
+        except BaseException:
+            with contextlib.suppress(OSError):
+                draft.rmdir()
+            os.close(handle)
+            raise
+        os.close(handle)
 
 
 def remove_dead_drafts(within: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import fcntl
 import json
 import os
 import shutil
@@ -22,8 +23,10 @@ from mmgrasp._files import (
     check_file,
     check_folder,
     check_new_file,
+    draft_folder,
     printable,
     read_text,
+    remove_dead_drafts,
     write_file,
     write_result,
 )
@@ -471,3 +474,38 @@ def test_trajectories_are_not_added_to_those_of_another_plan(
     with pytest.raises(mg.IoError, match=r"holds pick_99_screw_0_lift.csv of another result"):
         small_plan.save_trajectories(tmp_path)
     assert {path: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+@pytest.mark.parametrize("moment", ["before it is opened", "before it is locked"])
+def test_a_draft_that_is_not_locked_yet_may_be_taken_for_a_dead_one(
+    moment: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Another run that begins in that moment removes it: the next is taken, and that one stays."""
+    removed = []
+
+    def other_run_begins() -> None:
+        monkeypatch.undo()
+        remove_dead_drafts(tmp_path)
+        removed.append(not list(tmp_path.iterdir()))
+
+    made, locked = tempfile.mkdtemp, fcntl.flock
+
+    def make(**where: Any) -> str:
+        folder = made(**where)
+        other_run_begins()
+        return folder
+
+    def lock(handle: int, how: int) -> None:
+        other_run_begins()
+        locked(handle, how)
+
+    if moment == "before it is opened":
+        monkeypatch.setattr(tempfile, "mkdtemp", make)
+    else:
+        monkeypatch.setattr(fcntl, "flock", lock)
+    with draft_folder(tmp_path) as draft:
+        assert removed == [True]
+        remove_dead_drafts(tmp_path)
+        assert draft.is_dir()
+        (draft / "plan.json").write_text("ours")
+    assert not list(tmp_path.iterdir())

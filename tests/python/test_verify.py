@@ -57,6 +57,30 @@ def test_broken_plans_are_refused_for_what_is_broken(small_plan_dict: dict[str, 
     assert code in {fault.code for fault in mg.verify_plan(plan, samples=50).faults}
 
 
+@pytest.mark.parametrize("zero_padding", [False, True])
+@pytest.mark.parametrize(("axis", "sign"), [(0, 1), (0, -1), (1, 1), (1, -1)])
+def test_regions_cut_off_on_one_side_are_refused(
+    small_plan_dict: dict[str, Any], axis: int, sign: int, zero_padding: bool
+) -> None:
+    """A search that gave up on one side of a tray proves nothing about the least number of stops."""
+    import numpy as np
+
+    plan = copy.deepcopy(small_plan_dict)
+    grid, stop = plan["grid"], plan["stops"][0]["pose"]
+    middles = [grid["origin"][a] + grid["resolution"] * (np.arange(grid[("nx", "ny")[a]]) + 0.5) for a in (0, 1)]
+    kept = sign * (middles[axis] - stop[axis]) <= 0.2
+    region = plan["regions"][0]
+    for heading, runs in region["cells"].items():
+        layer = np.zeros((grid["ny"], grid["nx"]), bool)
+        for iy, a, b in runs:
+            layer[iy, a:b] = True
+        region["cells"][heading] = runs_of((layer & (kept if axis == 0 else kept[:, None])).astype(int))
+    if zero_padding:
+        plan["scenario"]["padding"] = {"links": 0.0, "by_name": {}}
+    codes = {fault.code for fault in mg.verify_plan(plan, samples=1).faults}
+    assert "region-incomplete" in codes
+
+
 def test_runs_hold_every_cell() -> None:
     import numpy as np
 

@@ -122,7 +122,14 @@ def _read_scene(plan: checks.PlanToCheck, scenario: Node) -> None:
         parts.append(checks.CheckedPart(_read_body(node), tray.raw, node["target"].boolean(), grasps))
     plan.parts = parts
     plan.allowed_collisions = allowed_collisions(scenario)
-    plan.padded = "padding" in scenario
+    plan.padded = "padding" in scenario and _pads(scenario["padding"])
+
+
+def _pads(padding: Node) -> bool:
+    """Whether some body is grown: not by zeros."""
+    values = [*padding["by_name"].items()] if "by_name" in padding else []
+    values += [(key, padding[key]) for key in ("links", "attached", "objects") if key in padding]
+    return any(value.number(least=0) > 0 for _, value in values)
 
 
 def allowed_collisions(scenario: Node) -> list[tuple[str, str]]:

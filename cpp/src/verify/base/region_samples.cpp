@@ -14,9 +14,11 @@ namespace {
 constexpr int kTries = 300;             // IK solutions tried for a part: fewer than at the stops, which must be robust.
 constexpr int kBeside = 2;              // Cells so many rows or columns from a region are beside it.
 constexpr double kLeastServing = 0.85;  // Least share of the poses drawn in a region that serve all its parts.
-constexpr double kOutside = 0.5;        // Largest share of the cells beside it that do: planners search less hard.
+constexpr int kSectors = 8;             // The border is looked at in pieces: a region may lack one side only.
+constexpr double kOutside = 0.5;        // Largest share of a piece's cells that serve, too: planners search less hard.
 constexpr double kClaimed = 0.9;        // Least share of the poses drawn in the disc that a stop claims.
 constexpr std::size_t kFewest = 5;      // Fewer samples than this tell nothing.
+constexpr int kFirstLook = 5;           // Cells drawn in each piece of the border, more where these serve.
 
 struct Cell {
   int layer, ix, iy;
@@ -50,6 +52,21 @@ class RegionCells {
   Eigen::Vector3d pose(const Cell& cell, double x, double y) const {
     return {grid_.origin.x() + (cell.ix + x) * grid_.resolution, grid_.origin.y() + (cell.iy + y) * grid_.resolution,
             grid_.headings[cell.layer]};
+  }
+
+  /// The cells beside the region by the side of it on which they lie: those of each heading in sectors around its
+  /// middle.
+  std::vector<std::vector<Cell>> border() const {
+    std::vector<Eigen::Vector3d> middles(grid_.headings.size(), Eigen::Vector3d::Zero());  // sums, and how many
+    for (const Cell& cell : inside) middles[cell.layer] += Eigen::Vector3d(cell.ix, cell.iy, 1);
+    std::vector<std::vector<Cell>> pieces(grid_.headings.size() * kSectors);
+    for (const Cell& cell : beside) {
+      const Eigen::Vector3d& sum = middles[cell.layer];
+      const double angle = std::atan2(cell.iy - sum.y() / sum.z(), cell.ix - sum.x() / sum.z());
+      const int sector = static_cast<int>(std::floor((angle / mmgrasp::detail::kPi + 1) / 2 * kSectors));
+      pieces[cell.layer * kSectors + std::clamp(sector, 0, kSectors - 1)].push_back(cell);
+    }
+    return pieces;
   }
 
   std::vector<Cell> inside, beside;
@@ -125,17 +142,9 @@ class RegionCheck {
                              " base poses drawn in it all parts can be grasped"});
     }
     if (plan_.padded) return;
-    std::size_t good = 0, tried = 0;
-    for (const Cell& cell : drawn(cells.beside, count, rng_)) {
-      if (context_.monitor.stopped()) return;
-      good += whole_cell_serves(cells, cell, parts);
-      ++tried;
-    }
-    if (tried >= kFewest && static_cast<double>(good) > kOutside * static_cast<double>(tried)) {
-      faults_.push_back(
-          {"region-incomplete", where,
-           "from " + std::to_string(good) + " of " + std::to_string(tried) +
-               " cells drawn beside it all parts can be grasped: the least number of stops is not proven"});
+    for (const std::vector<Cell>& piece : cells.border()) {
+      if (piece.size() < kFewest || complete(cells, piece, parts, where)) continue;
+      return;  // one piece that is missing is enough
     }
   }
 
@@ -161,6 +170,27 @@ class RegionCheck {
   }
 
  private:
+  /// Whether most cells of a piece of the border do not serve. Few are looked at where these few do not.
+  bool complete(const RegionCells& cells, const std::vector<Cell>& piece, const std::vector<int>& parts,
+                const std::string& where) {
+    int good = 0, tried = 0;
+    for (const int count : {kFirstLook, context_.options.region_samples}) {
+      for (const Cell& cell : drawn(piece, count, rng_)) {
+        if (context_.monitor.stopped()) return true;
+        good += whole_cell_serves(cells, cell, parts);
+        ++tried;
+      }
+      if (good <= kOutside * tried) return true;
+    }
+    const Eigen::Vector3d middle = cells.pose(piece[piece.size() / 2], 0.5, 0.5);
+    faults_.push_back({"region-incomplete", where,
+                       "from " + std::to_string(good) + " of " + std::to_string(tried) +
+                           " cells drawn beside it, around (" + text(middle.x()) + ", " + text(middle.y()) +
+                           ") at heading " + text(middle.z()) +
+                           ", all parts can be grasped: the least number of stops is not proven"});
+    return false;
+  }
+
   bool serves(const Eigen::Vector3d& pose, const std::vector<int>& parts, bool thoroughly = false) {
     Faults none;
     return check_workspace(plan_, pose, 0, "", none) && search_.serves(pose, parts, thoroughly);

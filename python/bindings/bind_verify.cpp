@@ -1,4 +1,5 @@
 #include "bindings.hpp"
+#include "mmgrasp/grasp/hand.hpp"
 #include "mmgrasp/verify/path_check.hpp"
 #include "mmgrasp/verify/plan_check.hpp"
 
@@ -305,6 +306,15 @@ void bind_verify(py::module_& top) {
       });
   m.def("overlapping_bodies", &overlapping_bodies, py::arg("bodies"),
         "Index pairs of the bodies that overlap by more than 1e-4 m; those that just touch do not.");
+  m.def(
+      "width_unlike_opening",
+      [](const Hand& hand, const std::vector<LinkShape>& part, const CheckedGrasp& grasp) {
+        return width_unlike_opening(
+            {hand.approach, hand.closing, hand.max_opening, hand.finger_depth, hand.finger_width}, part, grasp);
+      },
+      py::arg("hand"), py::arg("part"), py::arg("grasp"),
+      "How far apart [m] pads of the hand's size are when they close on the part at the grasp, where that is not the "
+      "grasp's opening, within 3 mm or a tenth of it; None where it is.");
   m.def(
       "check_plan",
       [](const PlanToCheck& plan, const Progress& progress, const py::kwargs& options) {

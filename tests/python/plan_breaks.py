@@ -228,6 +228,18 @@ def region_and_radius_inflated(plan: dict[str, Any]) -> None:
     plan["stops"][0]["radius"] *= 1.3
 
 
+def drop_raised(plan: dict[str, Any]) -> None:
+    plan["scenario"]["place_region"]["drop_height"] += 0.1
+
+
+def bin_region_widened(plan: dict[str, Any]) -> None:
+    plan["scenario"]["place_region"]["size"] = [2.0, 2.0]
+
+
+def robot_moved_off_its_base(plan: dict[str, Any]) -> None:
+    plan["scenario"]["robot"]["urdfs"][0]["pose"]["xyz"] = [3.0, 0.0, 10.0]
+
+
 def rate_halved(plan: dict[str, Any]) -> None:
     plan["robustness_rate"] = 0.5
 
@@ -294,6 +306,9 @@ def workspace_shrunk(plan: dict[str, Any]) -> None:
 # Each must be refused.
 BREAKS = [
     approach_cut,
+    drop_raised,
+    bin_region_widened,
+    robot_moved_off_its_base,
     lift_cut,
     accelerations_zeroed,
     fingers_press_into_the_part,

@@ -91,7 +91,7 @@ def full_scenario(small: dict[str, Any]) -> dict[str, Any]:
     assert OPTIONS.keys() | {"positioning_uncertainty"} == _core._supply_option_table().keys()
     assert REACH.keys() == _core._reach_option_table().keys()
     scenario["options"], scenario["reach"] = OPTIONS, REACH
-    grasp = {"pose": {"xyz": [0.0, 0.0, 0.0], "rpy": [0.0, 1.6, 0.0]}, "opening": 0.05, "quality": 0.7}
+    grasp = {"pose": {"xyz": [0.0, 0.0, 0.0], "rpy": [0.0, 1.6, 0.0]}, "opening": 0.06, "quality": 0.7}
     scenario["part_types"] = {
         "bracket": {**scenario["part_types"]["bracket"], "grasp_options": {"approaches": 6, "positions": 2}},
         "rail": {"shapes": [{"box": [0.025, 0.06, 0.08], "pose": {"xyz": [0.0, 0.0, 0.01]}}], "grasps": [grasp]},

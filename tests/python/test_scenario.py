@@ -99,6 +99,11 @@ BAD = [
         [{"pose": {"xyz": [0, 0, 0.1]}, "opening": 0.03}, {"pose": {"xyz": [0, 0, 0]}, "opening": 0.03}],
         ["part_types.bracket.grasps", "1 of 2 grasps hold nothing of part type bracket", "(0, 0, 0.1)"],
     ),
+    (
+        "part_types.bracket.grasps",
+        [{"pose": {"xyz": [0, 0, 0]}, "opening": 0.05}, {"pose": {"xyz": [0, 0, 0]}, "opening": 0.03}],
+        ["part_types.bracket.grasps[1].opening", "0.03", "meet part type bracket at 0.05 m"],
+    ),
     ("trays.0.parts.type", "braket", ["trays[0].parts.type", "did you mean bracket?"]),
     ("trays.0.parts.grid", [3, 0], ["trays[0].parts.grid[1]", ">= 1"]),
     ("trays.0.parts.grid", [3, 40], ["trays[0].parts", "wall"]),
@@ -294,7 +299,7 @@ def test_parts_lie_where_the_grid_says(small_path: Path) -> None:
 def test_listed_parts_and_own_grasps(small: dict[str, Any], write: Callable[..., Path]) -> None:
     scenario = copy.deepcopy(small)
     pose = {"xyz": [0, 0, 0.01], "rpy": [0, math.pi / 2, 0]}
-    scenario["part_types"]["bracket"]["grasps"] = [{"pose": pose, "opening": 0.03}, {"pose": pose, "opening": 0.2}]
+    scenario["part_types"]["bracket"]["grasps"] = [{"pose": pose, "opening": 0.05}, {"pose": pose, "opening": 0.2}]
     scenario["trays"][0]["parts"] = [
         {"type": "bracket", "xyz": [0.05, 0.0], "rpy": [0, 0, 0.3], "name": "left"},
         {"type": "bracket", "xyz": [-0.05, 0.0, 0.1]},
@@ -303,7 +308,7 @@ def test_listed_parts_and_own_grasps(small: dict[str, Any], write: Callable[...,
     parts = mg.load_scenario(write(scenario)).trays[0].tray.parts
     assert [p.name for p in parts] == ["A/left", "A/bracket_01"]
     assert [p.target for p in parts] == [True, False]
-    assert [g.opening for g in parts[0].grasps] == [0.03]
+    assert [g.opening for g in parts[0].grasps] == [0.05]
 
 
 def test_a_hand_may_be_read_from_the_robot(small: dict[str, Any], write: Callable[..., Path]) -> None:

@@ -7,7 +7,7 @@ import mmgrasp._core
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['CheckedBody', 'CheckedDriveBy', 'CheckedFinger', 'CheckedGrasp', 'CheckedGrid', 'CheckedIntersection', 'CheckedLegValues', 'CheckedMotion', 'CheckedPart', 'CheckedPick', 'CheckedRegion', 'CheckedStop', 'CheckedTray', 'Fault', 'PathCheckResult', 'PlanCheckResult', 'PlanToCheck', 'StopRate', 'check_path', 'check_plan', 'overlapping_bodies']
+__all__: list[str] = ['CheckedBody', 'CheckedDriveBy', 'CheckedFinger', 'CheckedGrasp', 'CheckedGrid', 'CheckedIntersection', 'CheckedLegValues', 'CheckedMotion', 'CheckedPart', 'CheckedPick', 'CheckedRegion', 'CheckedStop', 'CheckedTray', 'Fault', 'PathCheckResult', 'PlanCheckResult', 'PlanToCheck', 'StopRate', 'check_path', 'check_plan', 'overlapping_bodies', 'width_unlike_opening']
 class CheckedBody:
     """
     A body of the scene as the plan file describes it.
@@ -633,4 +633,8 @@ def check_plan(plan: PlanToCheck, *, progress: collections.abc.Callable[[str, fl
 def overlapping_bodies(bodies: collections.abc.Sequence[CheckedBody]) -> list[tuple[int, int]]:
     """
     Index pairs of the bodies that overlap by more than 1e-4 m; those that just touch do not.
+    """
+def width_unlike_opening(hand: mmgrasp._core.Hand, part: collections.abc.Sequence[mmgrasp._core.LinkShape], grasp: CheckedGrasp) -> float | None:
+    """
+    How far apart [m] pads of the hand's size are when they close on the part at the grasp, where that is not the grasp's opening, within 3 mm or a tenth of it; None where it is.
     """

@@ -10,11 +10,13 @@ import numpy as np
 
 from .. import _core
 from .._core import verify as checks
+from ..scenario.robot_section import BIN_LINK
 from ..scenario.shapes import shape_to_dict
 from ..scenario.tray_body import TrayBody
 from .premises import premises
 
 Plan = dict[str, Any]
+_IDENTITY = {"xyz": [0.0, 0.0, 0.0], "quat_xyzw": [0.0, 0.0, 0.0, 1.0]}
 _CLOSE = 1e-6  # [m], [rad]
 _RADIUS_SLACK = 1e-9  # [m]; smaller differences of discs are rounding, for planners and the check alike
 
@@ -22,7 +24,7 @@ _RADIUS_SLACK = 1e-9  # [m]; smaller differences of discs are rounding, for plan
 def check_consistency(plan: Plan) -> list[checks.Fault]:
     """Faults of a solved plan whose form is that of the schema."""
     rules = (
-        *(_hand, _options, _trays, _chosen, _grid, _regions, _intersections, _stops, _counts),
+        *(_hand, _robot, _options, _trays, _chosen, _grid, _regions, _intersections, _stops, _counts),
         *(_route, _in_passing, _answer, _premises),
     )
     return [checks.Fault("wrong-values", where, message) for rule in rules for where, message in rule(plan)]
@@ -36,6 +38,18 @@ def _hand(plan: Plan) -> Found:
     tool, tip = plan["scenario"]["gripper"]["tool_link"], plan["scenario"]["arm"]["tip_link"]
     if tool != tip:
         yield "scenario.gripper.tool_link", f"is {tool}, the arm ends at {tip}"
+
+
+def _robot(plan: Plan) -> Found:
+    robot, region = plan["scenario"]["robot"], plan["scenario"]["place_region"]
+    first = robot["urdfs"][0]
+    if not first["parent_link"] and not _same(first["pose"], _IDENTITY):
+        yield "scenario.robot.urdfs[0].pose", "moves the robot's root, which stands where the base does"
+    for k, link in enumerate(robot["links"]):
+        if link["name"] != BIN_LINK or not link["shapes"]:
+            continue
+        if not _same(link["shapes"][0].get("size", [])[:2], region["size"]):
+            yield f"scenario.robot.links[{k}]", "is not of the size of place_region"
 
 
 def _options(plan: Plan) -> Found:

@@ -63,6 +63,7 @@ def read_part_types(node: Node, gripper: Hand) -> dict[str, PartType]:
         if "grasps" in entry:
             grasps, too_wide = _listed_grasps(entry["grasps"], gripper)
             _check_they_hold(entry["grasps"], name, shapes, grasps, gripper)
+            _check_openings(entry["grasps"], name, shapes, gripper)
         else:
             grasps, too_wide = _core._sample_grasps(shapes, gripper, **_grasp_options(entry))
         types[name] = PartType(shapes, grasps, too_wide, entry)
@@ -120,6 +121,22 @@ def _check_they_hold(node: Node, name: str, shapes: list[LinkShape], grasps: lis
             f"{len(empty)} of {len(grasps)} grasps hold nothing of part type {name}: no part of it is between the fingers, e.g. "
             f"with the tool frame at ({x:.4g}, {y:.4g}, {z:.4g}) m in the part's frame"
         )
+
+
+def _check_openings(node: Node, name: str, shapes: list[LinkShape], gripper: Hand) -> None:
+    """Refuses openings that are not the part's width between the pads, by the rule of `verify`."""
+    if not (gripper.finger_depth > 0 and gripper.finger_width > 0):
+        return
+    for entry in node.elements():
+        opening = entry["opening"].number(least=0)
+        if opening > gripper.max_opening:
+            continue  # left out as too wide
+        width = checks.width_unlike_opening(gripper, shapes, checks.CheckedGrasp(entry["pose"].pose(), opening))
+        if width is not None:
+            entry["opening"].fail(
+                f"the fingers, of {gripper.finger_depth:g} x {gripper.finger_width:g} m, meet part type {name} at {width:.4g} m: "
+                "the opening is the width of the part between them"
+            )
 
 
 def read_tray(node: Node, types: dict[str, PartType], gripper: Hand, scans: ScanReader) -> TraySetup:

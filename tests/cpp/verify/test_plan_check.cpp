@@ -270,9 +270,10 @@ TEST(PlanCheck, ReleaseOutsideBin) {
 }
 
 TEST(PlanCheck, ReleaseHeight) {
-  EXPECT_EQ(codes_of(good_plan({0.8, 0, 0.12, 0, -0.032, 0, 0})), Codes{"release-height"});
-  EXPECT_TRUE(codes_of(good_plan({0.8, 0, 0.12, 0, -0.0305, 0, 0})).empty());
-  EXPECT_EQ(codes_of(good_plan({0.8, 0, 0.12, 0, 0.051, 0, 0})), Codes{"release-height"});
+  for (const double off : {-0.032, -0.006, 0.006, 0.051})
+    EXPECT_EQ(codes_of(good_plan({0.8, 0, 0.12, 0, off, 0, 0})), Codes{"release-height"}) << off;
+  for (const double off : {-0.004, 0.004})
+    EXPECT_TRUE(codes_of(good_plan({0.8, 0, 0.12, 0, off, 0, 0})).empty()) << off;
 }
 
 TEST(PlanCheck, ReleaseTilted) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -100,5 +101,16 @@ MMGRASP_EXPORT PlanCheckResult check_plan(const PlanToCheck& plan, const PlanChe
 /// just touch do not. Throws InvalidInput for an unusable shape.
 MMGRASP_EXPORT std::vector<std::pair<std::size_t, std::size_t>> overlapping_bodies(
     const std::vector<CheckedBody>& bodies);
+
+/// The fingers of a parallel gripper: unit axes in the tool frame, size of the pads [m].
+struct CheckedPads {
+  Eigen::Vector3d approach, closing;
+  double max_opening, finger_depth, finger_width;
+};
+
+/// How far apart [m] pads are when they close on the part at the grasp, where that is not the grasp's opening, within
+/// 3 mm or a tenth of it.
+MMGRASP_EXPORT std::optional<double> width_unlike_opening(const CheckedPads& pads, const std::vector<LinkShape>& part,
+                                                          const CheckedGrasp& grasp);
 
 }  // namespace mmgrasp::verify

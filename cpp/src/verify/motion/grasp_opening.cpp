@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mmgrasp/verify/plan_check.hpp"
 #include "verify/context.hpp"
 
 namespace mmgrasp::verify::detail {
@@ -15,10 +16,14 @@ constexpr int kHalvings = 12;        // How often the last step is halved.
 constexpr double kPlay = 3e-3;       // How far the width may be off the part's [m],
 constexpr double kShare = 0.1;       // or this share of it.
 
+CheckedPads pads_of(const PlanToCheck& plan) {
+  return {plan.approach, plan.closing, plan.max_opening, plan.finger_depth, plan.finger_width};
+}
+
 /// The axes of a hand at its tool frame: approach, closing, across.
-Pose hand_axes(const PlanToCheck& plan, const Pose& T_object_hand) {
+Pose hand_axes(const CheckedPads& hand, const Pose& T_object_hand) {
   Eigen::Matrix3d axes;
-  axes << plan.approach, plan.closing, plan.approach.cross(plan.closing);
+  axes << hand.approach, hand.closing, hand.approach.cross(hand.closing);
   Pose T = T_object_hand;
   T.linear() = T_object_hand.linear() * axes;
   return T;
@@ -28,9 +33,9 @@ Pose hand_axes(const PlanToCheck& plan, const Pose& T_object_hand) {
 /// along the approach and across approach and closing.
 class Pad {
  public:
-  Pad(const PlanToCheck& plan, const PlacedBody& part, const Pose& T_object_hand, double depth, double width)
+  Pad(const CheckedPads& hand, const PlacedBody& part, const Pose& T_object_hand, double depth, double width)
       : part_(part) {
-    T_object_pads_ = hand_axes(plan, T_object_hand);
+    T_object_pads_ = hand_axes(hand, T_object_hand);
     LinkShape shape;
     shape.shape = Box{Eigen::Vector3d(depth, kThickness, width)};
     pad_ = make_solids({shape}).front();
@@ -68,11 +73,11 @@ class Pad {
 };
 
 /// Whether fingers that close from their widest opening meet anything.
-bool holds_something(const PlanToCheck& plan, const PlacedBody& part, const Pose& T_object_hand) {
+bool holds_something(const CheckedPads& hand, const PlacedBody& part, const Pose& T_object_hand) {
   LinkShape shape;
-  shape.shape = Box{Eigen::Vector3d(plan.finger_depth, plan.max_opening, plan.finger_width)};
+  shape.shape = Box{Eigen::Vector3d(hand.finger_depth, hand.max_opening, hand.finger_width)};
   const Solid between = make_solids({shape}).front();
-  const Pose T = hand_axes(plan, T_object_hand);
+  const Pose T = hand_axes(hand, T_object_hand);
   const Bounds bounds = bounds_at(between, T);
   for (std::size_t i = 0; i < part.solids.size(); ++i) {
     if (bounds.intersects(part.bounds[i]) && touches(between, T, part.solids[i], part.T_world_shape[i])) return true;
@@ -86,7 +91,7 @@ void check_listed_grasps(const PlanToCheck& plan, Faults& faults) {
     if (!part.target) continue;
     const PlacedBody body = place_body(part.body.name, part.body.shapes, Pose::Identity());
     const auto empty = std::count_if(part.grasps.begin(), part.grasps.end(), [&](const CheckedGrasp& grasp) {
-      return !holds_something(plan, body, grasp.T_object_hand);
+      return !holds_something(pads_of(plan), body, grasp.T_object_hand);
     });
     if (empty == 0) continue;
     faults.push_back({"grasp-empty", "part '" + part.body.name + "'",
@@ -106,19 +111,31 @@ void check_grasp_openings(const Context& context, Faults& faults) {
     if (index < 0 || g < 0 || g >= static_cast<int>(plan.parts[index].grasps.size())) continue;  // said at the pick
     const CheckedPart& part = plan.parts[index];
     const CheckedGrasp& grasp = part.grasps[g];
-    const PlacedBody body = place_body(part.body.name, part.body.shapes, Pose::Identity());
-    const double from = 0.5 * plan.max_opening + 2 * kPlay, play = std::max(kPlay, kShare * grasp.opening);
-    // Where the pads' middles meet the part, or where the first of their edges does: pads are said to be larger than
-    // what the part leaves room for beside a bend.
-    const Pad point(plan, body, grasp.T_object_hand, kPoint, kPoint);
-    const Pad pad(plan, body, grasp.T_object_hand, plan.finger_depth, plan.finger_width);
-    if (std::abs(point.between(from) - grasp.opening) <= play) continue;
-    const double between = pad.between(from);
-    if (std::abs(between - grasp.opening) <= play) continue;
+    const std::optional<double> width = width_unlike_opening(pads_of(plan), part.body.shapes, grasp);
+    if (!width) continue;
     faults.push_back({"grasp-opening", context.pick_name(pick),
                       "its grasp says " + text(grasp.opening) + " m, pads of " + text(plan.finger_depth) + " x " +
-                          text(plan.finger_width) + " m meet the part at " + text(between) + " m"});
+                          text(plan.finger_width) + " m meet the part at " + text(*width) + " m"});
   }
 }
 
 }  // namespace mmgrasp::verify::detail
+
+namespace mmgrasp::verify {
+
+std::optional<double> width_unlike_opening(const CheckedPads& pads, const std::vector<LinkShape>& part,
+                                           const CheckedGrasp& grasp) {
+  const detail::PlacedBody body = detail::place_body("part", part, Pose::Identity());
+  const double from = 0.5 * pads.max_opening + 2 * detail::kPlay;
+  const double play = std::max(detail::kPlay, detail::kShare * grasp.opening);
+  // Where the pads' middles meet the part, or where the first of their edges does: pads are said to be larger than
+  // what the part leaves room for beside a bend.
+  const detail::Pad point(pads, body, grasp.T_object_hand, detail::kPoint, detail::kPoint);
+  if (std::abs(point.between(from) - grasp.opening) <= play) return {};
+  const detail::Pad pad(pads, body, grasp.T_object_hand, pads.finger_depth, pads.finger_width);
+  const double between = pad.between(from);
+  if (std::abs(between - grasp.opening) <= play) return {};
+  return between;
+}
+
+}  // namespace mmgrasp::verify

@@ -6,11 +6,10 @@
 namespace mmgrasp::verify::detail {
 namespace {
 
-constexpr double kStraight = 1e-3;   // Deviation from the line, and missing length [m].
-constexpr double kTurn = 0.01;       // Deviation from the final orientation [rad].
-constexpr double kLevel = 0.01;      // Tilt of a released part [rad].
-constexpr double kBelowBin = 1e-3;   // A released part may be this far below the bin's top [m] ...
-constexpr double kAboveDrop = 0.05;  // ... and this far above the drop height [m].
+constexpr double kStraight = 1e-3;  // Deviation from the line, and missing length [m].
+constexpr double kTurn = 0.01;      // Deviation from the final orientation [rad].
+constexpr double kLevel = 0.01;     // Tilt of a released part [rad].
+constexpr double kDrop = 5e-3;      // A part may be let go this far below or above the drop height [m].
 
 }  // namespace
 
@@ -76,10 +75,10 @@ void check_release(const Context& context, const CheckedPart& part, const Pose& 
     faults.push_back({"release-tilted", where, "the part is let go tilted by " + text(tilt) + " rad from how it lay"});
   }
   const double height = lowest_z(part.body.shapes, T_world_bin.inverse() * T_world_released);
-  if (height < -kBelowBin || height > plan.drop_height + kAboveDrop) {
+  if (std::abs(height - plan.drop_height) > kDrop) {
     faults.push_back({"release-height", where,
-                      "the part's lowest point is " + text(height) + " m over the bin's top, allowed is [" +
-                          text(-kBelowBin) + ", " + text(plan.drop_height + kAboveDrop) + "]"});
+                      "the part's lowest point is " + text(height) + " m over the bin's top, must be " +
+                          text(plan.drop_height) + " m"});
   }
 }
 

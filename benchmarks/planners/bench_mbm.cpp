@@ -2,8 +2,8 @@
 // edge resolution and one range. Times are of the processor (one thread); the wall's stand beside them. Every path of
 // ours is looked at again by FCL at 0.005 rad.
 //
-//     bench_mbm <problems.txt> [seeds] [baseline: 0 or 1] [only this set; "": all] [longest tree edge by the diagonal of
-//     the sampling bounds, 0.05]
+//     bench_mbm <problems.txt> [seeds] [baseline: 0 or 1] [only this set; "": all] [longest tree edge by the diagonal
+//     of the sampling bounds, 0.05]
 
 #include <algorithm>
 #include <map>

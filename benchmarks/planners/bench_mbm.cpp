@@ -2,7 +2,8 @@
 // edge resolution and one range. Times are of the processor (one thread); the wall's stand beside them. Every path of
 // ours is looked at again by FCL at 0.005 rad.
 //
-//     bench_mbm <problems.txt> [seeds] [baseline: 0 or 1] [only this set]
+//     bench_mbm <problems.txt> [seeds] [baseline: 0 or 1] [only this set; "": all] [longest tree edge by the diagonal
+//     of the sampling bounds, 0.05]
 
 #include <algorithm>
 #include <map>
@@ -59,6 +60,7 @@ int main(int argc, char** argv) {
   const int seeds = argc > 2 ? std::atoi(argv[2]) : 1;
   const bool with_baseline = argc > 3 ? std::atoi(argv[3]) != 0 : true;
   const std::string only = argc > 4 ? argv[4] : "";
+  const double range_share = argc > 5 ? std::atof(argv[5]) : 0.05;
   std::map<std::string, std::map<std::string, Runs>> sets;
   for (const bench::MbmProblem& problem : bench::MbmReader(argv[1]).read()) {
     if (!only.empty() && problem.set.find(only) == std::string::npos) continue;
@@ -67,7 +69,7 @@ int main(int argc, char** argv) {
     const bench::EdgeSteps steps{mmgrasp::motion_bounds(checker), 0.02, kWorkspaceStep};
     std::optional<bench::OmplBaseline> baseline;
     if (with_baseline) baseline.emplace(problem.group, problem.world, steps);
-    const double range = 0.05 * (problem.group.sample_upper() - problem.group.sample_lower()).norm();
+    const double range = range_share * (problem.group.sample_upper() - problem.group.sample_lower()).norm();
     auto& runs = sets[problem.set];
     for (int seed = 1; seed <= seeds; ++seed) {
       for (const bool shorten : {false, true}) {
@@ -109,7 +111,8 @@ int main(int argc, char** argv) {
   for (const auto& [set, programs] : sets) {
     for (const auto& [who, run] : programs) {
       run.print(set, who,
-                "edges at 5 mm of any link point, 10 s, range a twentieth of the diagonal of the joint limits");
+                "edges at 5 mm of any link point, 10 s, range " + std::to_string(range_share) +
+                    " of the diagonal of the joint limits");
     }
   }
   return 0;

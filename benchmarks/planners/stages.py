@@ -36,6 +36,7 @@ VARIANTS: dict[str, dict[str, dict]] = {
     "rrt_star_mg": {
         "all stages": {},
         "without first grasps": {"first_grasps": 0},
+        "the trees' first path": {"first_grasps": 0, "goal_cost": 1e9, "max_iterations": 20000},
         "without straight lines": {"straight": False},
         "without informed draws": {"informed": False},
         "without exploration": {"exploration": 0},

@@ -9,6 +9,7 @@
 #include "mmgrasp/core/random.hpp"
 #include "mmgrasp/robot/detail/joint_metric.hpp"
 #include "plan/motion/beyond_limits.hpp"
+#include "plan/motion/free_edges.hpp"
 #include "plan/motion/motion_edges.hpp"
 #include "plan/motion/motion_goals.hpp"
 #include "plan/motion/ompl_bridge.hpp"
@@ -241,25 +242,31 @@ class MotionSearch {
   bool finish_shortened(const JointPath& found, double resolution) {
     JointPath path = found;
     Rng rng(options_.seed, 1);
+    detail::FreeEdges known;
     detail::ShorteningOptions shortening;
     shortening.iterations = options_.shorten_iterations;
     shortening.resolution = resolution;
     shortening.stopped = [&] { return monitor_.stopped() || time_left() < 0; };
+    shortening.skips_at_end = edges_.steered();
     detail::shorten_path(edges_, path, rng, shortening);
-    if (monitor_.stopped() || !is_free(path)) return false;
     if (!edges_.steered()) {
       detail::remove_redundant_waypoints(path.waypoints, [&](const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
-        return !shortening.stopped() && edges_.straight_stays_free(a, b, final_resolution_);
+        if (shortening.stopped() || !edges_.straight_stays_free(a, b, final_resolution_)) return false;
+        known.add(a, b);
+        return true;
       });
     }
+    if (monitor_.stopped() || !is_free(path, known)) return false;
     finish(std::move(path));
     return true;
   }
 
-  bool is_free(const JointPath& path) {
+  /// The final check; `known` are edges that passed it.
+  bool is_free(const JointPath& path, const detail::FreeEdges& known = {}) {
     for (std::size_t i = 0; i + 1 < path.waypoints.size(); ++i) {
       if (monitor_.stopped()) return false;
-      if (!edges_.straight_stays_free(path.waypoints[i], path.waypoints[i + 1], final_resolution_)) return false;
+      const Eigen::VectorXd &a = path.waypoints[i], &b = path.waypoints[i + 1];
+      if (!known.has(a, b) && !edges_.straight_stays_free(a, b, final_resolution_)) return false;
     }
     return true;
   }

@@ -35,7 +35,7 @@ class Shortener {
       const bool gained = i % 3 == 2 && !edges_.steered() ? shortcut_one_joint() : shortcut();
       without_gain = gained ? 0 : without_gain + 1;
     }
-    skip_waypoints();
+    if (options_.skips_at_end) skip_waypoints();
   }
 
  private:

@@ -12,6 +12,7 @@ struct ShorteningOptions {
   int iterations = 200;
   double resolution = 1;  ///< Resolution factor of edge checks, as in MotionEdges.
   std::function<bool()> stopped = [] { return false; };
+  bool skips_at_end = true;  ///< Skip waypoints once more; off for callers that remove redundant ones themselves.
 };
 
 /// Shortcuts a free path and keeps it free at the edges' steps. First waypoints are skipped where a straight edge is

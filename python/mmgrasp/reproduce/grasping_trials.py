@@ -14,6 +14,7 @@ from .unknown_objects import (
     CAUTIOUS,
     FORCE,
     FRICTION,
+    MAX_INCIDENCE,
     NOISES,
     OBJECTS,
     POSE_ERROR,
@@ -27,7 +28,7 @@ from .unknown_objects import (
 )
 
 PAPER = {"success": 187 / 200, "precise": 159 / 200}
-ATTEMPTS = 10
+ATTEMPTS = 20
 BINS = (0.0, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0)
 MODELS = {"weighted": "(4.9) weighted", "drawn": "(4.1) drawn surfaces"}
 RESAMPLES = 2000
@@ -88,6 +89,7 @@ def _run(context: Context, rough: bool) -> Result:
             "views": VIEWS,
             "sigma of the cameras [m]": ", ".join(f"{n}: {a:g} + {b:g} z^2" for n, (a, b) in NOISES.items()),
             "error of poses [m, rad]": list(POSE_ERROR),
+            "most slanted surfaces that are used [rad]": MAX_INCIDENCE,
             "samples": SAMPLES,
             "standard deviations kept free, in turn": ", ".join(f"{s:g}" for s in CAUTIOUS),
             "friction of the model": FRICTION,

@@ -32,7 +32,7 @@ PINHOLE = mg.mapping.PinholeCamera(width=160, height=120, fx=200.0, fy=200.0, cx
 
 
 class Errors(NamedTuple):
-    """Of the map at the points of the true surface that it knows, over all trials [m]."""
+    """The map's errors, and what it promises, at the points of the true surface that it knows, over all trials [m]."""
 
     error: np.ndarray
     sigma: np.ndarray

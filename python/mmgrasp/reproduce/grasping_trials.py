@@ -28,7 +28,7 @@ from .unknown_objects import (
 )
 
 PAPER = {"success": 187 / 200, "precise": 159 / 200}
-ATTEMPTS = 20
+ATTEMPTS = 10
 BINS = (0.0, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0)
 MODELS = {"weighted": "(4.9) weighted", "drawn": "(4.1) drawn surfaces"}
 RESAMPLES = 2000

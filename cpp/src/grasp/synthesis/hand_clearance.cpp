@@ -10,7 +10,7 @@ using Eigen::Vector3d;
 
 constexpr double kSide = 0.008;  // of the cells in which points are looked for [m]
 
-/// Of a box that stands at T in the world.
+/// Height of the lowest corner of a box that stands at T in the world.
 double lowest(const Pose& T, const LinkShape& box) {
   return T.translation().z() - T.linear().row(2).cwiseAbs().dot(std::get<Box>(box.shape).size / 2);
 }

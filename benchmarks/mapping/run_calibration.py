@@ -32,7 +32,7 @@ PINHOLE = mg.mapping.PinholeCamera(width=160, height=120, fx=200.0, fy=200.0, cx
 
 
 class Errors(NamedTuple):
-    """Of the map at the points of the true surface that it knows, over all trials [m]."""
+    """The map's errors, and what it promises, at the points of the true surface that it knows, over all trials [m]."""
 
     error: np.ndarray
     sigma: np.ndarray
@@ -89,7 +89,8 @@ def turned(vector: np.ndarray) -> np.ndarray:
 class Bench:
     """Exact images of one object from all views, which every trial disturbs anew."""
 
-    def __init__(self, mesh: mg.Mesh) -> None:
+    def __init__(self, name: str, mesh: mg.Mesh) -> None:
+        self.seed = list(name.encode())  # other errors for every object
         self.points = surface_points(mesh, np.random.default_rng(11))
         self.cameras = cameras()
         self.images = []
@@ -102,7 +103,7 @@ class Bench:
         errors, sigmas = [], []
         covariance = np.diag([translation**2] * 3 + [rotation**2] * 3)
         for trial in range(trials):
-            rng = np.random.default_rng([17, frames, trial])
+            rng = np.random.default_rng([*self.seed, frames, trial])
             sdf = mg.ProbabilisticSdf(threads=1)
             for k in range(frames):
                 view = (trial + k * VIEWS // frames) % VIEWS  # spread over all, others in every trial
@@ -125,6 +126,7 @@ def draw(found: dict[tuple[str, int], Errors], path: Path) -> None:
 
     matplotlib.use("agg")
     from matplotlib import pyplot
+    from matplotlib.ticker import FixedLocator, NullLocator, ScalarFormatter
 
     figure, axes = pyplot.subplots(2, 2, figsize=(9, 8), layout="constrained")
     shares = np.linspace(0.02, 0.995, 60)
@@ -146,6 +148,10 @@ def draw(found: dict[tuple[str, int], Errors], path: Path) -> None:
         row[0].set(
             xscale="log", yscale="log", xlabel="promised sigma [mm]", ylabel="found error, rms [mm]", title=poses
         )
+        for axis in (row[0].xaxis, row[0].yaxis):
+            axis.set_major_locator(FixedLocator([0.1, 0.2, 0.5, 1, 2, 5]))
+            axis.set_minor_locator(NullLocator())
+            axis.set_major_formatter(ScalarFormatter())
         row[0].legend(fontsize=8)
         row[1].axhspan(-0.02, 0.02, color="#DDDDDD")
         row[1].axvline(0.95, color="#888888", lw=1, ls="--")
@@ -169,11 +175,11 @@ def main() -> None:
     print("| --- " * (len(arguments.frames) + 3) + "|")
     for name in arguments.objects:
         files = [DATA / name / f"{file}.obj" for file in ("textured_simple_reoriented", "collision_vhacd")]
-        bench = Bench(centred(next(path for path in files if path.exists())))
+        bench = Bench(name, centred(next(path for path in files if path.exists())))
         for poses, size in (("exact poses", 0.0), ("pose errors", 1.0)):
             cells, errors = [], None
             for frames in arguments.frames:
-                trials = max(8, arguments.integrations // frames)
+                trials = min(120, max(24, arguments.integrations // frames))
                 errors = bench.measure(frames, trials, size * TRANSLATION, size * ROTATION)
                 found.setdefault((poses, frames), []).append(errors)
                 cells.append(f"{errors.within(1.96):.3f}")

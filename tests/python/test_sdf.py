@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import mmgrasp as mg
+from camera_poses import look_at
 
 INTRINSICS = mg.mapping.PinholeCamera(width=160, height=120, fx=200.0, fy=200.0, cx=79.5, cy=59.5)
 CAMERA = mg.mapping.DepthCamera(INTRINSICS, mg.mapping.DepthNoise(constant=0.001))
@@ -155,3 +156,22 @@ def test_a_frame_is_moved_onto_the_map() -> None:
         mg.mapping.register_frame(sdf, image, CAMERA, pose_covariance=np.zeros((6, 6)))
     with pytest.raises(mg.InvalidInput, match="min_overlap"):
         mg.mapping.register_frame(sdf, image, CAMERA, pose_covariance=covariance, min_overlap=0.0)
+
+
+def test_views_of_opposite_sides_are_not_taken_for_inverted_poses() -> None:
+    """A lone box turned before the camera: what one view sees is hidden from the next, and contradicts nothing."""
+    box = [mg.LinkShape(mg.Box([0.16, 0.06, 0.21]))]
+    images = []
+    for k in range(24):
+        z, angle = 1 - (2 * k + 1) / 24, 2.39996 * k
+        way = np.array([np.sqrt(1 - z * z) * np.cos(angle), np.sqrt(1 - z * z) * np.sin(angle), z])
+        images.append(mg.mapping.render_depth(box, INTRINSICS, look_at(0.35 * way, np.zeros(3))))
+    warnings = 0
+    for first in images[::3]:
+        for second in images:
+            sdf = mg.ProbabilisticSdf(voxel=0.006, truncation=0.02)
+            sdf.integrate(first, CAMERA)
+            report = sdf.integrate(second, CAMERA)  # refuses inverted poses
+            assert np.isnan(report.agreement) or report.agreement > 0.5
+            warnings += report.warning != ""
+    assert warnings < 0.1 * 8 * 24

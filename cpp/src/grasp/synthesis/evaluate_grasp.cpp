@@ -15,6 +15,8 @@ constexpr double kPathStep = 0.01;   // between places on the way in that are ch
 constexpr double kPlaced = 5e-4;     // pads this near to where they should be are there [m]
 constexpr int kRounds = 12;          // of moving finger by finger
 constexpr double kShareStep = 0.02;  // for the pads' speed by finite differences
+constexpr double kSteep = 0.3;       // least share of an approach that leads down, of those that the table ends
+constexpr double kClear = 1e-4;      // left above the table, for roundings and what centring changes [m]
 
 Vector3d pad_direction(const FingerPad& pad) {
   return pad.T_hand_pad.linear().col(2);
@@ -72,6 +74,7 @@ EvaluatedGrasp GraspEvaluator::place(const Vector3d& middle, const Vector3d& axi
   const ClosingLine line = closing_line(hand_.pads(grasp.shares));
   grasp.T_world_hand.linear() = rotation_between(line.axis, hand_.hand().approach, axis, approach);
   grasp.T_world_hand.translation() = middle - grasp.T_world_hand.linear() * line.middle;
+  draw_back(grasp);
   return grasp;
 }
 
@@ -265,7 +268,15 @@ EvaluatedGrasp GraspEvaluator::shifted(const EvaluatedGrasp& from, double radius
   const Eigen::Vector2d shift = rng.in_disc(radius);
   const Vector3d in = approach(grasp);
   grasp.T_world_hand.translation() += shift.x() * in + shift.y() * axis.cross(in);
+  draw_back(grasp);
   return grasp;
+}
+
+/// Low parts are held as deep as the table allows: a hand that would stand in it goes back along its approach.
+void GraspEvaluator::draw_back(EvaluatedGrasp& grasp) const {
+  const Vector3d in = approach(grasp);
+  const double deep = clearance_.in_table(hand_.boxes(grasp.shares), grasp.T_world_hand);
+  if (deep > 0 && -in.z() > kSteep) grasp.T_world_hand.translation() += (deep + kClear) / in.z() * in;
 }
 
 std::vector<double> GraspEvaluator::holding_shares(const EvaluatedGrasp& grasp) const {

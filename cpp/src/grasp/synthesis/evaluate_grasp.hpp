@@ -54,6 +54,7 @@ class GraspEvaluator {
 
  private:
   Verdict cast(const EvaluatedGrasp& grasp, std::vector<ContactPatch>& patches) const;
+  void draw_back(EvaluatedGrasp& grasp) const;
   void centre_parallel(EvaluatedGrasp& grasp) const;
   Verdict centre_by_finger(EvaluatedGrasp& grasp) const;
   /// Each group's share so that its pads go on by `error` [m] on average.

@@ -10,6 +10,11 @@ using Eigen::Vector3d;
 
 constexpr double kSide = 0.008;  // of the cells in which points are looked for [m]
 
+/// Height of the lowest corner of a box that stands at T in the world.
+double lowest(const Pose& T, const LinkShape& box) {
+  return T.translation().z() - T.linear().row(2).cwiseAbs().dot(std::get<Box>(box.shape).size / 2);
+}
+
 }  // namespace
 
 HandClearance::HandClearance(const std::vector<Vector3d>& points, const std::vector<double>& sigma, double sigmas,
@@ -22,12 +27,19 @@ HandClearance::HandClearance(const std::vector<Vector3d>& points, const std::vec
   }
 }
 
+double HandClearance::in_table(const std::vector<LinkShape>& boxes, const Pose& T_world_hand) const {
+  double deepest = 0;
+  for (const LinkShape& box : boxes) {
+    if (table_) deepest = std::max(deepest, *table_ + margin_ - lowest(T_world_hand * box.T_link_shape, box));
+  }
+  return deepest;
+}
+
 HandContact HandClearance::check(const std::vector<LinkShape>& boxes, const Pose& T_world_hand) const {
   for (const LinkShape& box : boxes) {
     const Pose T = T_world_hand * box.T_link_shape;
     const Vector3d half = std::get<Box>(box.shape).size / 2;
-    const double lowest = T.translation().z() - T.linear().row(2).cwiseAbs().dot(half);
-    if (table_ && lowest < *table_ + margin_) return HandContact::table;
+    if (table_ && lowest(T, box) < *table_ + margin_) return HandContact::table;
     if (touches(T, half, {})) return HandContact::map;
   }
   return HandContact::none;

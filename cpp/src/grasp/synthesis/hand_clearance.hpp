@@ -21,6 +21,8 @@ class MMGRASP_EXPORT HandClearance {
   HandClearance(const std::vector<Eigen::Vector3d>& points, const std::vector<double>& sigma, double sigmas,
                 double margin, const std::optional<double>& table);
 
+  /// How far the hand reaches below the table's top and the margin above it [m]; 0: it does not, or there is no table.
+  double in_table(const std::vector<LinkShape>& boxes, const Pose& T_world_hand) const;
   /// The first thing that the boxes, given in the hand's frame, touch.
   HandContact check(const std::vector<LinkShape>& boxes, const Pose& T_world_hand) const;
   /// Whether a point lies deeper than this in one of the boxes [m], however uncertain its place.

@@ -4,6 +4,12 @@
 
 namespace mmgrasp::detail {
 
+namespace {
+
+constexpr double kOneSide = 0.7;  // cosine of the largest angle between two ways of looking at one side of a part
+
+}  // namespace
+
 KeyFrame KeyFrame::of(const DepthImage& image) {
   constexpr int kColumns = 48, kRows = 36;
   KeyFrame out;
@@ -30,8 +36,11 @@ Agreement KeyFrame::compare(const DepthImage& image, const Pose& T_camera_key, d
               v = std::min(image.camera.height - 1, static_cast<int>((*pixel)[1] + 0.5));
     const double z = image.at(std::max(0, u), std::max(0, v));
     if (!(z > 0)) continue;
+    const double nearer = p.z() - z, same = tolerance + 0.02 * z;
+    // From another side the back of a part hides its front, and contradicts nothing.
+    if (nearer > same && p.dot(T_camera_key.linear() * point) < kOneSide * p.norm() * point.norm()) continue;
     ++out.seen;
-    out.confirmed += std::abs(z - p.z()) <= tolerance + 0.02 * z;
+    out.confirmed += std::abs(nearer) <= same;
   }
   return out;
 }

@@ -9,7 +9,8 @@
 
 namespace mmgrasp::detail {
 
-/// How many of a frame's measured points another frame sees, and at how many of them it measured the same depth.
+/// How many of a frame's measured points another frame should see, and at how many of them it measured the same depth.
+/// Points that it sees from another side and behind what it measured are hidden from it and do not count.
 struct Agreement {
   int seen = 0, confirmed = 0;
   double share() const { return seen > 0 ? static_cast<double>(confirmed) / seen : 0; }

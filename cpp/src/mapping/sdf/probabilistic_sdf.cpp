@@ -19,7 +19,7 @@
 namespace mmgrasp {
 namespace {
 
-// How many points and rays one work item has.
+// Numbers of points and rays in one work item.
 constexpr Eigen::Index kFewestPoints = 4096, kMostPoints = 1 << 20, kFewestRays = 1024, kMostRays = 1 << 16;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 

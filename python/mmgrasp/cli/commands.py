@@ -155,14 +155,25 @@ def run_view(arguments: argparse.Namespace, console: Console) -> int:
     check_names(root)
     if content["outcome"] == "solved":
         plan_to_check(root)
+    wanted = [file for file in (arguments.png, arguments.film) if file is not None]
+    for file in wanted:
+        check_file(file)
+        refuse_own_input(file, arguments.plan)
+    if len(wanted) == 2 and os.path.realpath(wanted[0]) == os.path.realpath(wanted[1]):
+        raise InvalidInput(f"--png and --film: {printable(str(wanted[0]))} cannot be both")
     if arguments.png is not None:
-        check_file(arguments.png)
-        refuse_own_input(arguments.png, arguments.plan)
         from ..viz.viewer import write_png
 
         with temporary_room(Path(os.path.realpath(arguments.png)).parent):
             write_png(content, arguments.png)
-        console.print(printable(str(arguments.png)), markup=False)
+    if arguments.film is not None:
+        from ..viz.film import write_film
+
+        with temporary_room(Path(os.path.realpath(arguments.film)).parent), Reporter(console) as report:
+            write_film(content, arguments.film, progress=report)
+    for file in wanted:
+        console.print(printable(str(file)), markup=False)
+    if wanted:
         return DONE
     from ..viz.viewer import view
 

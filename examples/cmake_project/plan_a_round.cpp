@@ -1,12 +1,13 @@
-// A whole round from structs: two trays on a table, planned, and judged by the independent checker. Uses the installed
-// library alone.
-// Usage: plan_a_round <folder of the shipped assets>
+// A whole round from structs: two trays on a table, planned, judged by the independent checker, and written as
+// plan.json, which `mmgrasp verify` and `mmgrasp view` take. Uses the installed library alone.
+// Usage: plan_a_round <folder of the shipped assets> [plan.json]
 #include <iostream>
 
 #include "mmgrasp/collision/floor.hpp"
 #include "mmgrasp/grasp/sample_grasps.hpp"
 #include "mmgrasp/reach/reach_database.hpp"
 #include "mmgrasp/task/part_supply.hpp"
+#include "mmgrasp/task/plan_file.hpp"
 #include "mmgrasp/task/plan_to_check.hpp"
 #include "mmgrasp/verify/plan_check.hpp"
 
@@ -55,8 +56,8 @@ Tray tray_of_brackets(const std::string& name, const Pose& T_world_tray, const H
 
 }  // namespace
 
-int main(int, char** argv) {
-  const std::string folder = std::string(argv[1]) + "/robots/fetchlike/fetchlike";
+int main(int count, char** arguments) {
+  const std::string folder = std::string(arguments[1]) + "/robots/fetchlike/fetchlike";
   RobotOptions options;
   options.base = BaseKind::diff_drive;
   const Robot robot = Robot::load(folder + ".urdf", folder + ".srdf", options);
@@ -80,7 +81,8 @@ int main(int, char** argv) {
   problem.options.positioning_uncertainty = 0.05;
   ReachOptions postures;
   postures.samples = 500000;
-  const PartSupplyPlan plan = plan_part_supply(problem, ReachDatabase::build(arm, postures));
+  const ReachDatabase database = ReachDatabase::build(arm, postures);
+  const PartSupplyPlan plan = plan_part_supply(problem, database);
   std::cout << "round " << to_string(plan.outcome) << ": " << plan.stops.size() << " stop(s), at least "
             << plan.lower_bound << ", " << plan.picks.size() << " picks\n";
   for (const Obstruction& what : plan.obstructions) std::cout << "- " << what.message << "\n";
@@ -90,5 +92,6 @@ int main(int, char** argv) {
   std::cout << verdict.configurations_checked << " configurations checked by KDL and FCL: " << verdict.faults.size()
             << " faults, " << verdict.minimal_stops << " stop(s) are enough\n";
   for (const verify::Fault& fault : verdict.faults) std::cout << "- " << fault.where << ": " << fault.message << "\n";
+  write_plan(problem, database, plan, count > 2 ? arguments[2] : "plan.json", {"two trays", "plan_a_round.cpp"});
   return verdict.faults.empty() ? 0 : 1;
 }

@@ -6,6 +6,7 @@
 #include "mmgrasp/task/base_sequence.hpp"
 #include "mmgrasp/task/part_supply.hpp"
 #include "mmgrasp/task/pick.hpp"
+#include "mmgrasp/task/plan_file.hpp"
 #include "mmgrasp/task/problem.hpp"
 #include "plan_arguments.hpp"
 
@@ -387,6 +388,21 @@ void bind_plan_result(py::module_& m) {
       },
       py::arg("problem"), py::arg("database"), py::kw_only(), py::arg("progress") = py::none(),
       "The whole of P1's Algorithm 1 and the motions around it, for a problem given as objects.");
+  m.def(
+      "write_plan",
+      [](const PartSupplyProblem& problem, const ReachDatabase& database, const PartSupplyPlan& plan,
+         const PathLike& path, const std::string& name, const std::string& source, double closing_speed) {
+        const std::string file = path_argument(path, "path");
+        const py::gil_scoped_release release;
+        write_plan(problem, database, plan, file, {name, source, closing_speed});
+      },
+      py::arg("problem"), py::arg("database"), py::arg("plan"), py::arg("path"), py::kw_only(),
+      py::arg("name") = PlanFileOptions().name, py::arg("source") = PlanFileOptions().source,
+      py::arg("closing_speed") = PlanFileOptions().closing_speed,
+      "Writes plan.json for a problem given as objects and the plan made with this database, so that `mmgrasp verify` "
+      "and\n"
+      "`mmgrasp view` take it; `closing_speed` of the gripper [m/s]. InvalidInput for shapes that a plan cannot hold\n"
+      "(planes but for the floor, voxels, meshes without a file) and a plan of another problem.");
 }
 
 }  // namespace

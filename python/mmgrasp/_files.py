@@ -51,7 +51,7 @@ def check_folder(path: Path) -> None:
                 folder.rmdir()
 
 
-PNG = b"\x89PNG\r\n\x1a\n"  # begins a picture
+PNG, GIF = b"\x89PNG\r\n\x1a\n", b"GIF8"  # begin pictures and films
 
 
 def check_file(path: Path, begins: bytes) -> None:

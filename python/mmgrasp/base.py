@@ -68,6 +68,7 @@ from ._core import (
     Pick as Pick,
     plan_pick as plan_pick,
     plan_stop_picks as plan_stop_picks,
+    write_plan as write_plan,
     plan_object_pick as plan_object_pick,
     Obstruction as Obstruction,
 )

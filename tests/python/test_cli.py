@@ -180,6 +180,14 @@ def test_output_folders_that_cannot_be_are_told_before_anything_runs(
             assert not reported.out
 
 
+def test_one_file_is_no_picture_and_film(out: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "below").mkdir()
+    same = tmp_path / "below" / ".." / "a.gif"
+    assert main(["view", str(out / "plan.json"), "--png", str(tmp_path / "a.gif"), "--film", str(same)]) == 2
+    assert "cannot be both" in capfd.readouterr().err
+    assert not (tmp_path / "a.gif").exists()
+
+
 def test_view_draws_a_picture(out: Path, tmp_path: Path) -> None:
     assert main(["view", str(out / "plan.json"), "--png", str(tmp_path / "plan.png")]) == 0
     assert (tmp_path / "plan.png").read_bytes().startswith(b"\x89PNG")

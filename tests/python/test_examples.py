@@ -10,7 +10,9 @@ from pathlib import Path
 
 import pytest
 
+import mmgrasp as mg
 from conftest import ASSETS, REPOSITORY
+from mmgrasp.part_supply import read_plan
 
 pytestmark = pytest.mark.slow
 
@@ -52,4 +54,8 @@ def test_stand_alone_cmake_project(tmp_path: Path) -> None:
     )
     run("cmake", "--build", str(consumer))
     for source in [*(EXAMPLES / "cmake_project").glob("*.cpp"), *sorted(EXAMPLES.glob("[0-9]*.cpp"))]:
-        assert run(str(consumer / source.stem), str(ASSETS)).strip()
+        out = [str(tmp_path / "plan.json")] if source.stem == "plan_a_round" else []
+        assert run(str(consumer / source.stem), str(ASSETS), *out).strip()
+    verdict = mg.verify_plan(tmp_path / "plan.json", samples=100)  # C++'s plan, by what `mmgrasp verify` does
+    assert verdict.ok and verdict.minimal_stops == 1
+    assert len(read_plan(tmp_path / "plan.json")["picks"]) == 8

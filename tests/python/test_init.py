@@ -171,8 +171,9 @@ def test_what_is_there_is_not_replaced(tmp_path: Path, capsys: pytest.CaptureFix
 def test_a_plan_is_not_replaced_by_its_picture(small_plan: mg.part_supply.ScenarioPlan, tmp_path: Path) -> None:
     plan = small_plan.save(tmp_path / "plan.json")
     before = plan.read_bytes()
-    assert main(["view", str(plan), "--png", str(plan)]) == 2
-    assert plan.read_bytes() == before
+    for option in ("--png", "--film"):
+        assert main(["view", str(plan), option, str(plan)]) == 2
+        assert plan.read_bytes() == before
 
 
 def meeting_fingers(apart: float) -> mg.Robot:

@@ -429,6 +429,7 @@ FOREIGN = [
     ("objects.json", ["grasp", "MAP", "--gripper", "asset:scenarios/storeroom.yaml", "--png", "{}"]),
     ("part.xacro", ["check", "r.urdf", "--write-srdf", "{}"]),
     ("plan.json", ["view", "plan.json", "--png", "{}"]),
+    ("plan.json", ["view", "plan.json", "--film", "{}"]),
     ("mine.yaml", ["init", "r.urdf", "-o", "{}"]),
     ("out/reproduction.md", ["reproduce", "p1-table-3.4", "--quick", "--out", "out"]),
     ("out/reproduction/p1-table-3.4.json", ["reproduce", "p1-table-3.4", "--quick", "--out", "out"]),

@@ -64,6 +64,7 @@ BAD = [
     ("robot.home.elbow_flex_joint", REMOVE, ["robot.home", "elbow_flex_joint"]),
     ("robot.home.shoulder_lift_joint", 9.0, ["shoulder_lift_joint", "9.0", "must be in"]),
     ("robot.joints.head", 0.0, ["robot.joints.head", "head_"]),
+    ("robot.mesh_tolerance", -0.01, ["robot.mesh_tolerance", ">= 0"]),
     ("robot.base_limits.speed", 1.0, ["robot.base_limits.speed", "unknown key"]),
     ("robot.base_limits.linear_velocity", 0, ["linear_velocity", "0.001"]),
     ("robot.mount", [{"urdf": "none.urdf", "parent_link": "x"}], ["robot.mount[0].urdf", "no such file"]),
@@ -344,3 +345,30 @@ def test_a_file_of_an_older_version_says_what_its_keys_are_called_now(
     old["carry"] = old.pop("place_region")
     with pytest.raises(mg.InvalidInput, match="reads version 3: carry is place_region now"):
         mg.load_scenario(write(old))
+
+
+def test_meshes_may_be_simpler_within_a_tolerance(
+    small: dict[str, Any], write: Callable[..., Path], tmp_path: Path
+) -> None:
+    """A column of 96 triangles on the robot: planned for as a cylinder that holds it, and verified by its mesh."""
+    column = mg.LinkShape(mg.Cylinder(0.05, 0.3)).surface(segments=48)
+    rows = ""
+    for triangle in column.triangles:
+        corners = "".join("vertex {} {} {}\n".format(*column.vertices[i]) for i in triangle)
+        rows += f"facet normal 0 0 0\nouter loop\n{corners}endloop\nendfacet\n"
+    (tmp_path / "column.stl").write_text(f"solid column\n{rows}endsolid column\n")
+    mesh = "<collision><geometry><mesh filename='column.stl'/></geometry></collision>"
+    (tmp_path / "column.urdf").write_text(f"<robot name='column'><link name='column'>{mesh}</link></robot>")
+    mount = {"urdf": str(tmp_path / "column.urdf"), "parent_link": "base_link", "prefix": "c_"}
+    mount["pose"] = {"xyz": [-0.2, 0.2, 0.6]}
+    raw = copy.deepcopy(small)
+    kinds = {}
+    for tolerance in (0.0, 0.001):
+        raw["robot"]["mount"] = [mount | {"mesh_tolerance": tolerance}]
+        path = write(raw, f"column_{tolerance}.yaml")
+        plan = mg.plan_part_supply(path)
+        (shape,) = plan.scenario.setup.robot.collisions("c_column")
+        kinds[tolerance] = shape.kind
+        assert plan.outcome == mg.Outcome.solved
+        assert mg.verify_plan(plan.to_dict(), scenario=path, samples=100).faults == []
+    assert kinds == {0.0: "mesh", 0.001: "cylinder"}

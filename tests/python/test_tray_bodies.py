@@ -56,7 +56,7 @@ def solid(body: TrayBody, points: np.ndarray) -> np.ndarray:
     height = np.where(ends, np.where(px < 0, heights[0], heights[1]), np.where(py > 0, heights[2], heights[3]))
     walled = (ends | (at[:, 1] > y / 2 - ty)) & (pz > 0) & (pz < height)
     covered = (pz > body.roof) & (pz < body.roof + floor) if body.roof is not None else np.zeros(len(points), bool)
-    return ~outside & (walled | ((pz < 0) & (pz > -floor)) | covered)
+    return np.asarray(~outside & (walled | ((pz < 0) & (pz > -floor)) | covered))
 
 
 @pytest.mark.parametrize(

@@ -20,6 +20,7 @@ from mmgrasp.documents.reading import Document
 from mmgrasp.part_supply.plan_file import check_form, check_names, plan_schema
 from mmgrasp.scenario.schema import NOTES, WORDS
 from mmgrasp.viz import png, raster, report, topview
+from mmgrasp.viz.film import SECONDS_PER_FRAME, write_film
 from mmgrasp.viz.scene import PlanScene
 from mmgrasp.viz.timeline import GRIP_TIME, State, Timeline, along_route
 
@@ -213,3 +214,26 @@ def words_of(schema: dict[str, Any]) -> set[str]:
 
 def test_every_word_of_the_plans_schema_is_applied() -> None:
     assert words_of(plan_schema()) <= WORDS | NOTES
+
+
+def test_a_film_follows_the_robot(tmp_path: Path) -> None:
+    """Its pictures are those of the plan's states at even times, seen from one direction; the robot stays in their middle."""
+    from PIL import Image, ImageSequence
+
+    plan = plan_by_hand()
+    seen: list[float] = []
+    file = write_film(plan, tmp_path / "round.gif", frames=4, progress=lambda _, share: seen.append(share))
+    assert seen == [0, 0.25, 0.5, 0.75]
+    with Image.open(file) as film:
+        assert film.info["duration"] == pytest.approx(1000 * SECONDS_PER_FRAME)
+        pictures = [np.asarray(frame.convert("RGB"), dtype=float) for frame in ImageSequence.Iterator(film)]
+    assert len(pictures) == 4
+    assert np.abs(pictures[0] - pictures[1]).max() > 50  # something moved
+    height, width, _ = pictures[0].shape
+    floor = pictures[0][-2, width // 2]
+    for picture in pictures:
+        middle = picture[height // 2 - 30 : height // 2 + 30, width // 2 - 20 : width // 2 + 20]
+        assert np.abs(middle - floor).max() > 30  # the robot, not the floor
+    with pytest.raises(mg.InvalidInput, match="no motions"):
+        write_film(plan | {"route": [], "picks": [], "stops": []}, tmp_path / "none.gif")
+    assert not (tmp_path / "none.gif").exists()

@@ -309,6 +309,7 @@ def _add_view(commands: Commands) -> None:
     parser = commands.add_parser("view", help="show a plan in the browser, or draw it")
     parser.add_argument("plan", type=_path, help="plan.json")
     parser.add_argument("--png", type=_path, metavar="FILE", help="write a picture instead of opening the browser")
+    parser.add_argument("--film", type=_path, metavar="FILE", help="write the whole round as an animated GIF")
     parser.add_argument("--port", type=_count(0, 65535, ""), default=8080, metavar="N")
 
 

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Console
 
 from .._core import Error, InvalidInput, Outcome
-from .._files import PNG, check_file, check_new_file, printable, temporary_room, write_file
+from .._files import GIF, PNG, check_file, check_new_file, printable, temporary_room, write_file
 from ..documents.reading import Document
 from ..part_supply import (
     ScenarioPlan,
@@ -153,13 +153,25 @@ def run_view(arguments: argparse.Namespace, console: Console) -> int:
     check_names(root)
     if content["outcome"] == "solved":
         plan_to_check(root)
+    wanted = [file for file in (arguments.png, arguments.film) if file is not None]
+    for file, begins in ((arguments.png, PNG), (arguments.film, GIF)):
+        if file is not None:
+            check_file(file, begins)
+    if len(wanted) == 2 and os.path.realpath(wanted[0]) == os.path.realpath(wanted[1]):
+        raise InvalidInput(f"--png and --film: {printable(str(wanted[0]))} cannot be both")
     if arguments.png is not None:
-        check_file(arguments.png, PNG)
         from ..viz.viewer import write_png
 
         with temporary_room(Path(os.path.realpath(arguments.png)).parent):
             write_png(content, arguments.png)
-        console.print(printable(str(arguments.png)), markup=False)
+    if arguments.film is not None:
+        from ..viz.film import write_film
+
+        with temporary_room(Path(os.path.realpath(arguments.film)).parent), Reporter(console) as report:
+            write_film(content, arguments.film, progress=report)
+    for file in wanted:
+        console.print(printable(str(file)), markup=False)
+    if wanted:
         return DONE
     from ..viz.viewer import view
 

@@ -94,7 +94,7 @@ def _still_joints(robot: Robot, needs: PlanningNeeds) -> None:
 
 
 def arm_rank(robot: Robot, arm: Arm) -> int:
-    """In how many independent directions the arm's last link moves, of 6: the most at 64 configurations."""
+    """How many independent directions, of 6, the arm's last link moves in: the most at 64 configurations."""
     joints = robot.group(base_link=arm.base_link, tip=arm.hand_link)
     lower, upper = np.maximum(joints.lower, -np.pi), np.minimum(joints.upper, np.pi)
     moves = upper > lower

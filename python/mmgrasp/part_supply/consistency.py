@@ -94,7 +94,7 @@ def _trays(plan: Plan) -> Found:
 
 
 def _chosen(plan: Plan) -> Found:
-    """Of parts asked for by number as many are picked as were asked for."""
+    """As many parts are picked as were asked for by number."""
     parts = {part["name"]: part for part in plan["scenario"]["parts"]}
     for i, tray in enumerate(plan["scenario"]["trays"]):
         own = {name for name, part in parts.items() if part["tray"] == tray["name"]}

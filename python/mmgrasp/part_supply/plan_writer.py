@@ -129,7 +129,7 @@ def scenario_to_dict(scenario: Scenario) -> dict[str, Any]:
 
 
 def _wanted(tray: TraySetup) -> dict[str, Any]:
-    """By type how many parts were asked for, and which there are to choose from."""
+    """How many parts of each type were asked for, and which there are to choose from."""
     return {kind: {"count": count, "of": tray.of_kind(kind)} for kind, count in sorted(tray.wanted.items())}
 
 

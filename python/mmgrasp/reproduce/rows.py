@@ -140,13 +140,13 @@ def draw_distance(result: dict[str, Any]) -> Figure:
     fig, (axis,) = figure(6.0, 3.6)
     x = [row["key"]["distance [m]"] for row in result["rows"]]
     paper_and_ours(axis, x, result["rows"], "radius [m]")
-    for algorithm, radii in stored_regions.radii(result["rows"]).items():
-        axis.plot(x, radii, "--", marker="s", markersize=3, linewidth=1, label=algorithm)
+    for (algorithm, radii), marker in zip(stored_regions.radii(result["rows"]).items(), "sv", strict=False):
+        axis.plot(x, radii, "--", marker=marker, markersize=4, linewidth=1, color="#d98324", label=algorithm)
     axis.legend(fontsize=8)
     axis.axhline(result["drawing"]["limit"], color="#b8405e", linewidth=1)
     axis.annotate("needed: the positioning uncertainty", (0.3, 0.085), color="#b8405e", fontsize=8)
     axis.axvline(0.8, color="#8a8f98", linestyle="--", linewidth=1)
-    axis.annotate("paper: >= 0.10 m\nbelow 0.8 m", (0.81, 0.14), color="#6a6f78", fontsize=8)
+    axis.annotate("paper: >= 0.10 m\nbelow 0.8 m", (0.61, 0.255), color="#6a6f78", fontsize=8)
     axis.set(
         xlabel="distance between the trays [m]",
         ylabel="radius of the largest shared disc [m]",

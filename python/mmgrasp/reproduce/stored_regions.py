@@ -85,7 +85,7 @@ class Papers:
 
 
 def radii(rows: Sequence[dict[str, Any]]) -> dict[str, list[float]]:
-    """Of a table's rows the radius that Algorithm 4 gives at each density, by the name of its columns."""
+    """The radius that Algorithm 4 gives in each row of a table, by the name of its columns (one a density)."""
     names = [name for name in rows[0]["values"] if name.endswith(_RADIUS)]
     return {name.removesuffix(_RADIUS): [row["values"][name]["ours"] for row in rows] for name in names}
 

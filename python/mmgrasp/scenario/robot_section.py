@@ -27,7 +27,7 @@ from .closed_fingers import fingers_may_meet
 from .shapes import read_shapes
 
 BASE_LIMITS = "linear_velocity angular_velocity linear_acceleration angular_acceleration workspace wheel_velocity wheel_separation"
-ROBOT_KEYS = "urdf srdf packages xacro_args base base_limits mount frames group tool_link joints home"
+ROBOT_KEYS = "urdf srdf packages xacro_args mesh_tolerance base base_limits mount frames group tool_link joints home"
 BIN_LINK = "place_bin"
 LONGEST_CROSSING = 600.0  # from end to end of a joint's range [s]
 SLOWEST = 1e-3  # of a base [m/s, rad/s and their rates]: a round that takes days has more samples than memory
@@ -209,7 +209,7 @@ def compose(node: Node) -> Robot:
     with (node["base_limits"] if "base_limits" in node else node).blamed():
         robot = _load(node, base, limits)
     for mount in node["mount"].elements() if "mount" in node else []:
-        mount.mapping("urdf parent_link", "srdf packages xacro_args pose prefix")
+        mount.mapping("urdf parent_link", "srdf packages xacro_args mesh_tolerance pose prefix")
         other = _load(mount, "fixed", {})
         _link(robot, mount["parent_link"])
         T = mount["pose"].pose() if "pose" in mount else np.eye(4)
@@ -237,7 +237,8 @@ def _load(node: Node, base: str, limits: dict[str, float]) -> Robot:
     if "xacro_args" in node and urdf.suffix != ".xacro":
         node["xacro_args"].fail("only a .xacro file takes arguments")
     arguments = {name: value.raw for name, value in node["xacro_args"].items()} if "xacro_args" in node else None
-    return Robot.load(urdf, srdf, packages, base, base_limits=limits, xacro_args=arguments)
+    tolerance = node["mesh_tolerance"].number(least=0) if "mesh_tolerance" in node else 0.0
+    return Robot.load(urdf, srdf, packages, base, base_limits=limits, mesh_tolerance=tolerance, xacro_args=arguments)
 
 
 def _link(robot: Robot, node: Node) -> None:

@@ -46,7 +46,7 @@ class TrayBody:
     @property
     def inner(self) -> np.ndarray:
         """Depth and width between the walls [m]."""
-        return np.array(self.size[:2]) - 2 * np.array(self.wall[:2])
+        return np.asarray(np.array(self.size[:2]) - 2 * np.array(self.wall[:2]))
 
     def shapes(self) -> list[LinkShape]:
         """Boxes in the tray's frame: those of base.tray_shapes, where nothing else is said."""

@@ -6,7 +6,6 @@ The renderer "own" is the library's software renderer and needs nothing; "mujoco
 
 from __future__ import annotations
 
-import io
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
@@ -14,8 +13,8 @@ import numpy as np
 
 from .. import _core
 from .._core import Hand, InvalidInput, JointTrajectory, Robot, World
-from .._files import write_file
 from ..bodies import SceneBodies, floor_tiles
+from ..viz.film import write_gif as write_gif
 from ..viz.png import write_png
 from ..viz.raster import Camera, Scene, render
 from ..viz.style import FLOOR, OBSTACLE, PART, ROBOT, ROBOT_ARM
@@ -157,16 +156,3 @@ def write_strip(path: str | Path, pictures: Sequence[np.ndarray], columns: int =
         y, x = (i // columns) * (height + gap), (i % columns) * (width + gap)
         sheet[y : y + height, x : x + width] = picture
     return write_png(path, sheet)
-
-
-def write_gif(path: str | Path, pictures: Sequence[np.ndarray], seconds_per_frame: float) -> Path:
-    """An endless animation."""
-    from PIL import Image
-
-    images = [Image.fromarray(p).quantize(64) for p in pictures]
-    buffer = io.BytesIO()
-    images[0].save(
-        buffer, "GIF", save_all=True, append_images=images[1:], duration=round(1000 * seconds_per_frame), loop=0
-    )
-    write_file(Path(path), buffer.getvalue())
-    return Path(path)

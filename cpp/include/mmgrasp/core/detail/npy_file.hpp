@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "mmgrasp/core/export.hpp"
+
 namespace mmgrasp::detail {
 
 /// What an array file of a database holds: numpy's name of the type and its shape, rows first.
@@ -60,7 +62,7 @@ constexpr std::uint64_t kReadWhole = 256'000'000;
 /// The bytes of a file in memory of its own, read whole or, of a larger file, piece by piece when asked for: who cuts
 /// the file short or writes into it changes nothing that was read, and what was not is missed by read(). (Of a mapped
 /// file, touching what was cut off would end the process.)
-class FileCopy {
+class MMGRASP_EXPORT FileCopy {
  public:
   /// Throws IoError when the file is missing or not `bytes` long.
   FileCopy(const std::string& path, std::uint64_t bytes, std::uint64_t read_whole = kReadWhole);

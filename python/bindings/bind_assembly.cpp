@@ -138,7 +138,9 @@ void bind_candidates(py::module_& m) {
   m.def(
       "planar_facets",
       [](const Given<MeshShape>& mesh, const std::vector<int>& faces, const Given<double>& angle) {
-        return planar_facets(*taken(mesh, "mesh").mesh, faces, taken(angle, "angle"));
+        const MeshShape shape = taken(mesh, "mesh");
+        const double most = taken(angle, "angle");
+        return interruptible([&] { return planar_facets(*shape.mesh, faces, most); });
       },
       "mesh"_a, "faces"_a = std::vector<int>{}, py::kw_only(), "angle"_a = 0.1,
       "Nearly plane pieces of a mesh, or of some of its faces (none: all), largest first: each grows from the largest "

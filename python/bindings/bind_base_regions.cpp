@@ -130,7 +130,8 @@ void bind_region_classes(py::module_& m) {
         if (heading < 0 || heading >= static_cast<int>(grid.headings.size())) {
           throw InvalidInput("heading = " + std::to_string(heading) + ": must be a layer of the grid");
         }
-        const InscribedCircle circle = inscribed_circle(grid, mask_argument(grid, cells), heading);
+        const CellMask mask = mask_argument(grid, cells);
+        const InscribedCircle circle = interruptible([&] { return inscribed_circle(grid, mask, heading); });
         return py::make_tuple(Eigen::Vector2d(circle.centre), circle.radius);
       },
       py::arg("grid"), py::arg("cells"), py::arg("heading") = 0,

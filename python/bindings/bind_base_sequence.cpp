@@ -85,7 +85,8 @@ void bind_stops(py::module_& m) {
   m.def(
       "robust_intersections",
       [](const BaseGrid& grid, const OneRegionATray& regions, double min_radius, std::size_t max_sets) {
-        return robust_intersections(grid, regions_argument(grid, regions), min_radius, max_sets);
+        const std::vector<BaseRegion> given = regions_argument(grid, regions);
+        return interruptible([&] { return robust_intersections(grid, given, min_radius, max_sets); });
       },
       py::arg("grid"), py::arg("regions"), py::arg("min_radius"), py::arg("max_sets") = std::size_t{200000},
       "Every set of trays whose shared cells hold a disc of at least `min_radius` [m] (P1 3.4.2).");
@@ -123,10 +124,13 @@ void bind_stops(py::module_& m) {
       .def("__repr__", [](const StopSet& s) {
         return std::string("StopSet(") + to_string(s.outcome) + ", " + std::to_string(s.stops.size()) + " stops)";
       });
-  m.def("cover_from_intersections",
-        py::overload_cast<const BaseGrid&, const std::vector<Intersection>&, int>(&cover_from_intersections),
-        py::arg("grid"), py::arg("intersections"), py::arg("trays"),
-        "The least number of intersections that cover all trays (P1 equation 3.1), with proof.");
+  m.def(
+      "cover_from_intersections",
+      [](const BaseGrid& grid, const std::vector<Intersection>& intersections, int trays) {
+        return interruptible([&] { return cover_from_intersections(grid, intersections, trays); });
+      },
+      py::arg("grid"), py::arg("intersections"), py::arg("trays"),
+      "The least number of intersections that cover all trays (P1 equation 3.1), with proof.");
   m.def(
       "plan_stops_exact",
       [](const BaseGrid& grid, const OneRegionATray& given, double min_radius, double time_limit, double tie_time_limit,
@@ -266,7 +270,7 @@ void bind_policies(py::module_& m) {
           points.emplace_back();
           for (Eigen::Index i = 0; i < rows.rows(); ++i) points.back().emplace_back(rows.row(i));
         }
-        return paired_order(points);
+        return interruptible([&] { return paired_order(points); });
       },
       py::arg("places"),
       "P1's heuristic (figure 3.11): parts of neighbouring trays at nearly constant distances go together. `places` is "
@@ -280,7 +284,7 @@ void bind_policies(py::module_& m) {
         options.smallest_first = smallest_first;
         options.restarts = restarts;
         options.seed = rng_seed;
-        return LongCall(py::none()).run([&](const Monitor&) { return optimised_order(parts, groups, order, options); });
+        return interruptible([&] { return optimised_order(parts, groups, order, options); });
       },
       py::arg("grid"), py::arg("cells"), py::arg("groups"), py::arg("order"), py::kw_only(),
       py::arg("smallest_first") = false, py::arg("restarts") = OrderOptions{}.restarts, py::arg("rng_seed") = 1,

@@ -188,19 +188,24 @@ void bind_map(py::module_& m) {
       .def(
           "score",
           [](const CapabilityMap& map, const ArrayLike& T_world_tips, const OptionalArray& T_world_root, double cone) {
-            return map.score(poses_argument(T_world_tips, "T_world_tips"), pose_argument(T_world_root, "T_world_root"),
-                             finite_argument(cone, "cone"));
+            const Poses tips = poses_argument(T_world_tips, "T_world_tips");
+            const Pose root = pose_argument(T_world_root, "T_world_root");
+            finite_argument(cone, "cone");
+            return interruptible([&] { return map.score(tips, root, cone); });
           },
           "T_world_tips"_a, "T_world_root"_a = py::none(), "cone"_a = 4.0,
           "Mean index over tool poses (m, 4, 4) with the root at a pose. With `cone` below pi [rad] only tool poses\n"
           "that approach within that angle of each pose count.")
       .def(
           "best_base_distance",
-          [](const CapabilityMap& map, const ArrayLike& T_world_tips, std::vector<double> distances, double heading,
-             double cone) {
-            const BaseDistance best = best_base_distance(
-                map, poses_argument(T_world_tips, "T_world_tips"), finite_argument(heading, "heading"),
-                finite_argument(std::move(distances), "distances"), finite_argument(cone, "cone"));
+          [](const CapabilityMap& map, const ArrayLike& T_world_tips, const std::vector<double>& distances,
+             double heading, double cone) {
+            const Poses tips = poses_argument(T_world_tips, "T_world_tips");
+            finite_argument(heading, "heading");
+            finite_argument(distances, "distances");
+            finite_argument(cone, "cone");
+            const BaseDistance best =
+                interruptible([&] { return best_base_distance(map, tips, heading, distances, cone); });
             return py::make_tuple(best.distance, best.score, best.scores);
           },
           "T_world_tips"_a, "distances"_a, "heading"_a = 0.0, "cone"_a = 4.0,

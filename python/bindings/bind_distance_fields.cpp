@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "batch.hpp"
 #include "bindings.hpp"
 #include "mmgrasp/geometry/grid_distance_field.hpp"
 
@@ -30,9 +31,14 @@ GridDistanceField grid_of(const ArrayLike& values, const ArrayLike& origin, doub
 std::pair<Eigen::VectorXd, Eigen::MatrixXd> distances_and_gradients(const DistanceField& field,
                                                                     const ArrayLike& points) {
   const Eigen::Matrix3Xd columns = matrix_argument(points, "points", 3).transpose();
-  Eigen::Matrix3Xd gradients;
-  Eigen::VectorXd distances = field.distances(columns, gradients);
-  return {std::move(distances), gradients.transpose()};
+  Eigen::VectorXd distances(columns.cols());
+  Eigen::MatrixXd gradients(columns.cols(), 3);
+  in_pieces(columns.cols(), [&](Eigen::Index first, Eigen::Index count) {
+    Eigen::Matrix3Xd piece;
+    distances.segment(first, count) = field.distances(columns.middleCols(first, count), piece);
+    gradients.middleRows(first, count) = piece.transpose();
+  });
+  return {std::move(distances), std::move(gradients)};
 }
 
 }  // namespace
@@ -45,7 +51,12 @@ void bind_distance_fields(py::module_& m) {
       .def(
           "distances",
           [](const DistanceField& f, const ArrayLike& points) {
-            return f.distances(matrix_argument(points, "points", 3).transpose());
+            const Eigen::Matrix3Xd columns = matrix_argument(points, "points", 3).transpose();
+            Eigen::VectorXd distances(columns.cols());
+            in_pieces(columns.cols(), [&](Eigen::Index first, Eigen::Index count) {
+              distances.segment(first, count) = f.distances(columns.middleCols(first, count));
+            });
+            return distances;
           },
           py::arg("points"), "Signed distances (m,) of `points` (m, 3) [m].")
       .def("distances_and_gradients", &distances_and_gradients, py::arg("points"),
@@ -68,7 +79,9 @@ void bind_distance_fields(py::module_& m) {
       "\n"
       "    field = mg.collision.MeshDistanceField(mesh)\n"
       "    world.add_field(\"statue\", field, mg.pose([2.0, 1.0, 0.0]))")
-      .def(py::init([](const MeshShape& mesh) { return std::make_shared<MeshDistanceField>(*mesh.mesh); }),
+      .def(py::init([](const MeshShape& mesh) {
+             return interruptible([&] { return std::make_shared<MeshDistanceField>(*mesh.mesh); });
+           }),
            py::arg("mesh"), "Raises InvalidInput for a mesh that is not closed.");
   const GridDistanceField::Grid own;
   py::class_<GridDistanceField, DistanceField, std::shared_ptr<GridDistanceField>>(

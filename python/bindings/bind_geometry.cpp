@@ -213,7 +213,7 @@ void bind_geometry(py::module_& m) {
           "surface",
           [](const LinkShape& s, int segments) {
             LinkShape out;
-            out.shape = MeshShape{shape_mesh(s.shape, segments)};
+            out.shape = MeshShape{interruptible([&] { return shape_mesh(s.shape, segments); })};
             return std::get<MeshShape>(out.shape);
           },
           py::arg("segments") = 24, "Its surface as triangles in the shape's own frame, for pictures.")

@@ -2,6 +2,7 @@
 #include "given.hpp"
 #include "mmgrasp/grasp/grasp.hpp"
 #include "mmgrasp/grasp/sample_grasps.hpp"
+#include "option_bounds.hpp"
 
 namespace mmgrasp::python {
 namespace {
@@ -19,6 +20,17 @@ const std::vector<OptionField<GraspSamplerOptions>>& sampler_fields() {
       option<O>("standoff", &O::standoff, "how far the tool frame stays outside the object's middle [m]"),
       option<O>("seed", &O::seed, "same seed, same grasps")};
   return fields;
+}
+
+const BoundedOptions<GraspSamplerOptions>& sampler_options() {
+  static const BoundedOptions<GraspSamplerOptions> options(sampler_fields(), {{"approaches", {1, 360, "directions"}},
+                                                                              {"positions", {1, 100, "places"}},
+                                                                              {"mesh_samples", {1, 100000, "points"}},
+                                                                              {"max_grasps", {1, 1e6, "grasps"}},
+                                                                              {"friction", {0.001, 10, ""}},
+                                                                              {"standoff", {-10, 10, "m"}},
+                                                                              {"seed", {0, kMostSeed, ""}}});
+  return options;
 }
 
 /// The provenance as a dict that names its sampler; None: the grasp was given.
@@ -134,13 +146,14 @@ void bind_record(py::module_& m) {
 
 void bind_grasp(py::module_& m) {
   m.def("_grasp_option_table", [] { return option_table(sampler_fields()); });
+  m.def("_grasp_option_bounds", [] { return sampler_options().bounds(); });
   bind_provenance(m);
   bind_record(m);
   bind_hand(m);
   m.def(
       "_sample_grasps",
       [](const std::vector<LinkShape>& object, const Hand& gripper, const py::kwargs& options) {
-        const GraspSamplerOptions read = read_options(sampler_fields(), options, "sample_grasps");
+        const GraspSamplerOptions read = sampler_options().read(options, "sample_grasps");
         SampledGrasps sampled;
         {
           sampled = interruptible([&] { return sample_grasps(object, gripper, read); });
@@ -153,7 +166,7 @@ void bind_grasp(py::module_& m) {
   m.def(
       "sample_grasps",
       [](const std::vector<LinkShape>& object, const Hand& gripper, const py::kwargs& options) {
-        const GraspSamplerOptions read = read_options(sampler_fields(), options, "sample_grasps");
+        const GraspSamplerOptions read = sampler_options().read(options, "sample_grasps");
         return interruptible([&] { return sample_grasps(object, gripper, read).grasps; });
       },
       py::arg("object"), py::arg("gripper"),

@@ -111,8 +111,10 @@ void bind_placement(py::module_& m) {
       .def("__repr__", [](const RestingPose& r) {
         return "RestingPose(" + std::string(py::repr(py::float_(r.probability))) + ")";
       });
-  m.def("resting_poses", &resting_poses, py::arg("part"),
-        "Faces of a part's convex hull on which it does not tip over, most probable first.");
+  m.def(
+      "resting_poses",
+      [](const std::vector<LinkShape>& part) { return interruptible([&] { return resting_poses(part); }); },
+      py::arg("part"), "Faces of a part's convex hull on which it does not tip over, most probable first.");
   py::class_<PlacedPart>(m, "PlacedPart", "A part lying in a tray.")
       .def_property_readonly(
           "T_tray_part", [](const PlacedPart& p) { return to_array(p.T_tray_part); },

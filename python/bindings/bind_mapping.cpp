@@ -111,7 +111,7 @@ void bind_images(py::module_& m) {
           "T_world_camera", [](const DepthImage& i) { return to_array(i.T_world_camera); },
           "Pose of the camera (4, 4); it looks along its +z.")
       .def(
-          "points", [](const DepthImage& i) { return rows_to_array(i.points()); },
+          "points", [](const DepthImage& i) { return rows_to_array(interruptible([&] { return i.points(); })); },
           "(n, 3): every measured point in the world, row by row [m].")
       .def("__repr__", [](const DepthImage& i) {
         return "DepthImage(" + std::to_string(i.camera.width) + " x " + std::to_string(i.camera.height) + ")";

@@ -3,8 +3,10 @@
 
 #include "bindings.hpp"
 #include "given.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/structure/object_path.hpp"
 #include "mmgrasp/structure/optimize_grasp.hpp"
+#include "option_bounds.hpp"
 #include "plan_arguments.hpp"
 
 namespace mmgrasp::python {
@@ -35,6 +37,27 @@ const std::vector<OptionField<ObjectPathOptions>>& object_path_fields() {
       option<O>("gravity", &O::gravity, "along the world's -z [m/s2]"),
       option<O>("max_sag", &O::max_sag, "largest displacement allowed at any pose [m]; 0: any")};
   return fields;
+}
+
+const BoundedOptions<ObjectPathOptions>& object_path_options() {
+  const Bounds weight{0, 1e6, ""}, scale{1e-9, 1e9, ""}, tolerance{1e-9, 1000, "rad or m"};
+  static const BoundedOptions<ObjectPathOptions> options(object_path_fields(),
+                                                         {{"motion_weight", weight},
+                                                          {"deflection_weight", weight},
+                                                          {"manipulability_weight", weight},
+                                                          {"motion_scale", scale},
+                                                          {"deflection_scale", scale},
+                                                          {"manipulability_scale", scale},
+                                                          {"max_joint_step", {1e-6, 1e6, "rad or m"}},
+                                                          {"position_tolerance", tolerance},
+                                                          {"rotation_tolerance", tolerance},
+                                                          {"edge_step", {1e-6, 1000, "rad or m"}},
+                                                          {"redundant_values", {0, 100000, "samples"}},
+                                                          {"base_spacing", {0.001, 1000, "m"}},
+                                                          {"base_headings", {1, 3600, "headings"}},
+                                                          {"gravity", {0, 1000, "m/s2"}},
+                                                          {"max_sag", {0, 1000, "m"}}});
+  return options;
 }
 
 const std::vector<OptionField<PopulationOptions>>& population_fields() {
@@ -99,6 +122,36 @@ const std::vector<OptionField<OptimizeGraspOptions>>& optimize_grasp_fields() {
     return out;
   }();
   return fields;
+}
+
+const BoundedOptions<OptimizeGraspOptions>& optimize_grasp_options() {
+  static const BoundedOptions<OptimizeGraspOptions> options = [] {
+    const Bounds count{1, 10000, ""}, share{1e-9, 1, ""};
+    std::map<std::string, Bounds> bounds = object_path_options().all();
+    bounds.insert({{"population", {4, 1e6, "points"}},
+                   {"max_evaluations", {1, 1e9, "grasps"}},
+                   {"target", {-detail::kInfinity, 1e300, ""}},
+                   {"seed", {0, kMostSeed, ""}},
+                   {"elite_sites", {0, 10000, "sites"}},
+                   {"best_sites", count},
+                   {"elite_recruits", count},
+                   {"recruits", count},
+                   {"stagnation_limit", {1, 1e9, "rounds"}},
+                   {"neighbourhood", share},
+                   {"shrinking", share},
+                   {"mutation_rate", {0, 1, ""}},
+                   {"mutation_size", share},
+                   {"connectivity", share},
+                   {"inertia", {0, 100, ""}},
+                   {"acceleration", {1e-9, 100, ""}},
+                   {"front_searches", {0, 10000, "searches"}},
+                   {"max_gap", {1e-12, 0.999, ""}},
+                   {"max_boxes", {1, 1e9, "boxes"}},
+                   {"time_limit", {1e-9, 1e6, "s"}},
+                   {"threads", {0, 1024, "(0: all)"}}});
+    return BoundedOptions<OptimizeGraspOptions>(optimize_grasp_fields(), std::move(bounds));
+  }();
+  return options;
 }
 
 GraspNeighbourhood neighbourhood_argument(const std::string& name) {
@@ -238,7 +291,7 @@ void bind_optimum(py::module_& m) {
          const Given<std::string>& neighbourhood, const Progress& progress, const py::kwargs& keywords) {
         const ObjectPathProblem problem = taken(given_problem, "problem");
         const Pipe pipe = taken(given_pipe, "pipe");
-        const OptimizeGraspOptions read = read_options(optimize_grasp_fields(), keywords, "optimize_grasp");
+        const OptimizeGraspOptions read = optimize_grasp_options().read(keywords, "optimize_grasp");
         GraspSearchOptions options = read.search;
         options.algorithm = taken(algorithm, "algorithm");
         options.neighbourhood = neighbourhood_argument(taken(neighbourhood, "neighbourhood_kind"));
@@ -268,6 +321,7 @@ void bind_optimum(py::module_& m) {
 
 void bind_object_path(py::module_& m) {
   m.def("_object_path_option_table", [] { return option_table(object_path_fields()); });
+  m.def("_object_path_option_bounds", [] { return optimize_grasp_options().bounds(); });
   m.def("_population_option_table", [] { return option_table(population_fields()); });
   m.def("_grasp_search_option_table", [] { return option_table(grasp_search_fields()); });
   bind_object_path_result(m);
@@ -289,7 +343,7 @@ void bind_object_path(py::module_& m) {
   py::class_<E>(m, "ObjectPathEvaluator",
                 "Costs many grasps along one path: prepared once. Not for several threads at a time.")
       .def(py::init([](const Given<P>& problem, const py::kwargs& options) {
-             return E(taken(problem, "problem"), read_options(object_path_fields(), options, "ObjectPathEvaluator"));
+             return E(taken(problem, "problem"), object_path_options().read(options, "ObjectPathEvaluator"));
            }),
            "problem"_a, ("Prepares robot, world and object." + option_help(object_path_fields())).c_str())
       .def(
@@ -304,7 +358,7 @@ void bind_object_path(py::module_& m) {
       [](const Given<P>& given_problem, const Given<Grasp>& given_grasp, const py::kwargs& options) {
         const P problem = taken(given_problem, "problem");
         const Grasp grasp = taken(given_grasp, "grasp");
-        const ObjectPathOptions read = read_options(object_path_fields(), options, "follow_object_path");
+        const ObjectPathOptions read = object_path_options().read(options, "follow_object_path");
         return interruptible([&] { return follow_object_path(problem, grasp, read); });
       },
       "problem"_a, "grasp"_a,

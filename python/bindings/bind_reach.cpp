@@ -6,6 +6,7 @@
 #include "mmgrasp/reach/reach_database.hpp"
 #include "mmgrasp/reach/reach_parts.hpp"
 #include "mmgrasp/reach/reach_solve.hpp"
+#include "option_bounds.hpp"
 
 namespace mmgrasp::python {
 namespace {
@@ -33,6 +34,18 @@ const std::vector<OptionField<ReachOptions>>& reach_fields() {
       option<ReachOptions>("seed", &ReachOptions::seed, "same seed, same database"),
       option<ReachOptions>("threads", &ReachOptions::threads, "0: all; does not change the answer")};
   return fields;
+}
+
+const BoundedOptions<ReachOptions>& reach_options() {
+  static const BoundedOptions<ReachOptions> options(reach_fields(), {{"samples", {1, 2e9, "draws"}},
+                                                                     {"position_cell", {0.001, 10, "m"}},
+                                                                     {"rotation_cell", {0.051, 3, "rad"}},
+                                                                     {"max_per_cell", {1, 1e6, "configurations"}},
+                                                                     {"min_manipulability", {0, 0.999, ""}},
+                                                                     {"thinning", {0, 1, ""}},
+                                                                     {"seed", {0, kMostSeed, ""}},
+                                                                     {"threads", {0, 1024, "(0: all)"}}});
+  return options;
 }
 
 const std::vector<OptionField<ReachSolveOptions>>& solve_fields() {
@@ -209,11 +222,12 @@ void bind_queries(py::module_& m, py::class_<ReachDatabase>& database) {
 }  // namespace
 
 void check_reach_options(const py::kwargs& options) {
-  read_options(reach_fields(), options, "reach");
+  reach_options().read(options, "reach");
 }
 
 void bind_reach(py::module_& m) {
   m.def("_reach_option_table", [] { return option_table(reach_fields()); });
+  m.def("_reach_option_bounds", [] { return reach_options().bounds(); });
   py::class_<ReachDatabase> database(m, "ReachDatabase",
                                      "Sampled arm configurations free of self-collision, in cells of the tool pose (P1 "
                                      "3.2.1): good first guesses for\n"
@@ -226,7 +240,7 @@ void bind_reach(py::module_& m) {
       .def_static(
           "build",
           [](const JointGroup& arm, const Progress& progress, const py::kwargs& options) {
-            const ReachOptions read = read_options(reach_fields(), options, "ReachDatabase.build");
+            const ReachOptions read = reach_options().read(options, "ReachDatabase.build");
             const JointGroup group = with_sampled_pairs(arm);
             return LongCall(progress).run(
                 [&](const Monitor& monitor) { return ReachDatabase::build(group, read, monitor); });
@@ -236,8 +250,7 @@ void bind_reach(py::module_& m) {
       .def_static(
           "part_count",
           [](const JointGroup& arm, const py::kwargs& options) {
-            return reach_part_count(with_sampled_pairs(arm),
-                                    read_options(reach_fields(), options, "ReachDatabase.part_count"));
+            return reach_part_count(with_sampled_pairs(arm), reach_options().read(options, "ReachDatabase.part_count"));
           },
           py::arg("arm"),
           ("Into how many parts build_to divides a build with these options." + option_help(reach_fields())).c_str())
@@ -245,7 +258,7 @@ void bind_reach(py::module_& m) {
           "build_parts",
           [](const PathLike& folder, const JointGroup& arm, const std::vector<std::int64_t>& parts,
              const Progress& progress, const py::kwargs& options) {
-            const ReachOptions read = read_options(reach_fields(), options, "ReachDatabase.build_parts");
+            const ReachOptions read = reach_options().read(options, "ReachDatabase.build_parts");
             const std::string name = path_argument(folder, "folder");
             const JointGroup group = with_sampled_pairs(arm);
             return LongCall(progress).run(
@@ -258,7 +271,7 @@ void bind_reach(py::module_& m) {
       .def_static(
           "load_or_build",
           [](const JointGroup& arm, const PathLike& cache_dir, const Progress& progress, const py::kwargs& options) {
-            const ReachOptions read = read_options(reach_fields(), options, "ReachDatabase.load_or_build");
+            const ReachOptions read = reach_options().read(options, "ReachDatabase.load_or_build");
             const std::string folder = path_argument(cache_dir, "cache_dir");
             const JointGroup group = with_sampled_pairs(arm);
             return LongCall(progress).run(
@@ -274,7 +287,7 @@ void bind_reach(py::module_& m) {
       .def_static(
           "build_to",
           [](const PathLike& path, const JointGroup& arm, const Progress& progress, const py::kwargs& options) {
-            const ReachOptions read = read_options(reach_fields(), options, "ReachDatabase.build_to");
+            const ReachOptions read = reach_options().read(options, "ReachDatabase.build_to");
             const std::string name = path_argument(path, "path");
             const JointGroup group = with_sampled_pairs(arm);
             return LongCall(progress).run(
@@ -342,7 +355,7 @@ void bind_reach(py::module_& m) {
       .def(
           "nearest",
           [](const ReachDatabase& db, const ArrayLike& T_base_tip, int count) {
-            if (count <= 0) throw InvalidInput("count = " + std::to_string(count) + ": must be > 0");
+            require_within(count, 1, 1e6, "count", "configurations");
             Eigen::MatrixXd out;
             const int found = db.nearest(pose_argument(T_base_tip, "T_base_tip"), count, out);
             return Eigen::MatrixXd(out.leftCols(found).transpose());

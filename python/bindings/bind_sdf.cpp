@@ -352,7 +352,11 @@ void bind_sdf(py::module_& m) {
             const int choice = named_choice(unknown, "unknown", {"unknown", "free", "occupied"});
             const Eigen::Matrix3Xd columns = columns_argument(points, "points");
             const auto field = sdf.distance_field(sigmas, static_cast<UnknownSpace>(choice));
-            return sdf_column(field->distances(columns));
+            Eigen::VectorXd distances(columns.cols());
+            in_pieces(columns.cols(), [&](Eigen::Index first, Eigen::Index count) {
+              distances.segment(first, count) = field->distances(columns.middleCols(first, count));
+            });
+            return sdf_column(distances);
           },
           "points"_a, "sigmas"_a = 2.0, "unknown"_a = "unknown",
           "mean - sigmas * sigma at `points` (n, 3), clipped to the truncation [m]. "

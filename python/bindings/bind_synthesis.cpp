@@ -7,6 +7,7 @@
 #include "mmgrasp/grasp/next_view.hpp"
 #include "mmgrasp/grasp/surface_draws.hpp"
 #include "mmgrasp/grasp/synthesize_grasps.hpp"
+#include "option_bounds.hpp"
 
 namespace mmgrasp::python {
 namespace {
@@ -68,6 +69,35 @@ const std::vector<OptionField<SynthesisCall>>& synthesis_fields() {
       option<C>("correlation_length", &C::draws, &SurfaceDrawOptions::correlation_length,
                 "over which the error of the surface changes, for `surface_draws` [m]")};
   return fields;
+}
+
+const BoundedOptions<SynthesisCall>& synthesis_options() {
+  const Bounds length{0, 10, "m"}, some_length{1e-9, 10, "m"}, share{0, 1, ""}, some_share{1e-9, 1, ""};
+  static const BoundedOptions<SynthesisCall> options(synthesis_fields(), {{"samples", {1, 1e6, "grasps"}},
+                                                                          {"refined", {1, 1e6, "grasps"}},
+                                                                          {"shift", length},
+                                                                          {"max_tilt", {0, 3.2, "rad"}},
+                                                                          {"table_tolerance", length},
+                                                                          {"sigmas", {0, 100, "standard deviations"}},
+                                                                          {"margin", length},
+                                                                          {"approach_distance", length},
+                                                                          {"min_distance", length},
+                                                                          {"max_grasps", {1, 1e6, "grasps"}},
+                                                                          {"threads", {0, 1024, "(0: all)"}},
+                                                                          {"seed", {0, kMostSeed, ""}},
+                                                                          {"friction", {0.001, 10, ""}},
+                                                                          {"angle_weight", share},
+                                                                          {"placement_weight", share},
+                                                                          {"centring_weight", share},
+                                                                          {"certainty_weight", share},
+                                                                          {"placement_scale", some_length},
+                                                                          {"max_sigma", some_length},
+                                                                          {"rays", {2, 50, "rays"}},
+                                                                          {"min_hits", some_share},
+                                                                          {"min_inliers", some_share},
+                                                                          {"plane_tolerance", some_length},
+                                                                          {"correlation_length", some_length}});
+  return options;
 }
 
 void bind_success(py::module_& m) {
@@ -293,6 +323,7 @@ void bind_synthesis(py::module_& m) {
       "InvalidInput on "
       "unknown joints,\nvalues outside limits, and when no two fingertips close on each other.");
   m.def("_synthesis_option_table", [] { return option_table(synthesis_fields()); });
+  m.def("_synthesis_option_bounds", [] { return synthesis_options().bounds(); });
   bind_success(m);
   bind_line_grasp(m);
   bind_result(m);
@@ -302,7 +333,7 @@ void bind_synthesis(py::module_& m) {
       [](const ProbabilisticSdf& map, const Hand& hand, const std::optional<double>& table, const OptionalArray& object,
          const Robot* robot, const JointGroup* arm, const World* world, const OptionalArray& arm_seed,
          int surface_draws, const Progress& progress, const py::kwargs& options) {
-        SynthesisCall call = read_options(synthesis_fields(), options, "synthesize_grasps");
+        SynthesisCall call = synthesis_options().read(options, "synthesize_grasps");
         call.search.table = table;
         call.search.object = box_argument(object);
         require(surface_draws >= 0, "surface_draws", surface_draws, "must be zero or positive");

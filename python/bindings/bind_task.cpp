@@ -8,6 +8,7 @@
 #include "mmgrasp/task/pick.hpp"
 #include "mmgrasp/task/plan_file.hpp"
 #include "mmgrasp/task/problem.hpp"
+#include "option_bounds.hpp"
 #include "plan_arguments.hpp"
 
 namespace mmgrasp::python {
@@ -40,6 +41,21 @@ const std::vector<OptionField<Options>>& supply_fields() {
   return fields;
 }
 
+const BoundedOptions<Options>& supply_options() {
+  static const BoundedOptions<Options> options(supply_fields(), {{"grid_resolution", {0.001, 10, "m"}},
+                                                                 {"grid_max_distance", {0, 1000, "m"}},
+                                                                 {"ik_seeds", {1, 1000, "configurations"}},
+                                                                 {"positioning_uncertainty", {0, 100, "m"}},
+                                                                 {"approach_distance", {0.001, 10, "m"}},
+                                                                 {"lift_height", {0.01, 10, "m"}},
+                                                                 {"motion_time_limit", {1e-6, 86400, "s"}},
+                                                                 {"route_resolution", {0.001, 100, "m"}},
+                                                                 {"robustness_samples", {0, 1e6, "base poses"}},
+                                                                 {"seed", {0, kMostSeed, ""}},
+                                                                 {"threads", {0, 1024, "(0: all)"}}});
+  return options;
+}
+
 Eigen::Matrix3d covariance_argument(const ArrayLike& value) {
   const Eigen::MatrixXd rows = matrix_argument(value, "arrival_covariance", 3);
   require(rows.rows() == 3, "arrival_covariance", std::to_string(rows.rows()) + " rows", "must have shape (3, 3)");
@@ -59,6 +75,7 @@ const std::vector<OptionField<PickOptions>>& pick_fields() {
 
 void bind_problem(py::module_& m) {
   m.def("_supply_option_table", [] { return option_table(supply_fields()); });
+  m.def("_supply_option_bounds", [] { return supply_options().bounds(); });
   m.def(
       "_check_arrival_covariance",
       [](const ArrayLike& covariance) { check_arrival_covariance(covariance_argument(covariance)); },
@@ -69,7 +86,7 @@ void bind_problem(py::module_& m) {
         if (section == "reach") {
           check_reach_options(options);
         } else {
-          read_options(supply_fields(), options, section.c_str());
+          supply_options().read(options, section.c_str());
         }
       },
       py::arg("section"), "Raises InvalidInput when an option of a scenario's section is out of range.");
@@ -151,7 +168,7 @@ void bind_problem(py::module_& m) {
                                        vector3_argument(start, "start"),
                                        vector3_argument(goal, "goal"),
                                        place_region,
-                                       read_options(supply_fields(), options, "PartSupplyProblem")};
+                                       supply_options().read(options, "PartSupplyProblem")};
              if (!arrival_covariance.is_none())
                problem.arrival_covariance = covariance_argument(py::reinterpret_borrow<ArrayLike>(arrival_covariance));
              problem.check();

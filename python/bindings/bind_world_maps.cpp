@@ -1,6 +1,7 @@
 // Maps of depth cameras as obstacles of a world.
 #include <algorithm>
 
+#include "batch.hpp"
 #include "bindings.hpp"
 #include "mmgrasp/collision/add_cells.hpp"
 #include "mmgrasp/mapping/occupancy_map.hpp"
@@ -96,12 +97,15 @@ void bind_occupancy(py::module_& m) {
           "query",
           [](const OccupancyMap& map, const ArrayLike& points) {
             const Eigen::Matrix3Xd columns = matrix_argument(points, "points", 3).transpose();
-            const std::vector<Occupancy> states = map.states(columns);
             py::array_t<bool> occupied(columns.cols()), known(columns.cols());
-            for (Eigen::Index i = 0; i < columns.cols(); ++i) {
-              occupied.mutable_data()[i] = states[i] == Occupancy::occupied;
-              known.mutable_data()[i] = states[i] != Occupancy::unknown;
-            }
+            bool *const is_occupied = occupied.mutable_data(), *const is_known = known.mutable_data();
+            in_pieces(columns.cols(), [&](Eigen::Index first, Eigen::Index count) {
+              const std::vector<Occupancy> states = map.states(columns.middleCols(first, count));
+              for (Eigen::Index i = 0; i < count; ++i) {
+                is_occupied[first + i] = states[i] == Occupancy::occupied;
+                is_known[first + i] = states[i] != Occupancy::unknown;
+              }
+            });
             return std::make_tuple(FlagArray(occupied), FlagArray(known));
           },
           "points"_a, "(occupied, known) at `points` (n, 3) [m]: free where known and not occupied.")

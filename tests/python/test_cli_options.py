@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import argparse
+import math
+import re
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -66,6 +69,24 @@ def test_the_parser_was_read() -> None:
     assert {("plan", "--seed"), ("arrive", "--pose"), ("scan", "--up"), ("check", "--package")} <= names
     assert {("arrive", "--picked"), ("reproduce", "--scheduler"), ("grasp", "--object")} <= names
     assert not [(name, action.dest) for name, action in options() if action.type is None and not action.choices]
+
+
+NO_NUMBER = {"_path", "_source", "_name", "_address", "_package", "_xacro_argument", "_mount", "_direction"}
+
+
+@pytest.mark.parametrize(("command", "action"), options(), ids=lambda v: v if isinstance(v, str) else v.dest)
+def test_numbers_have_bounds_and_keep_them(command: str, action: argparse.Action) -> None:
+    """The bounds that the parser states are taken, and what is next to them is not."""
+    if action.choices or getattr(action.type, "__name__", "") in NO_NUMBER:
+        return
+    number: Any = action.type
+    assert math.isfinite(number.least) and math.isfinite(number.most), "an option without both bounds"
+    for bound, beyond in ((number.least, -1), (number.most, 1)):
+        text = str(int(bound)) if number.is_whole else repr(float(bound))
+        assert number(text) == bound * number.scale
+        further = str(int(bound) + beyond) if number.is_whole else repr(math.nextafter(bound, beyond * math.inf))
+        with pytest.raises(argparse.ArgumentTypeError, match=re.escape(number.unit or "must be")):
+            number(further)
 
 
 @pytest.mark.parametrize(("command", "action"), options(), ids=lambda v: v if isinstance(v, str) else v.dest)

@@ -492,7 +492,7 @@ def test_a_draft_that_is_not_locked_yet_may_be_taken_for_a_dead_one(
     made, locked = tempfile.mkdtemp, fcntl.flock
 
     def make(**where: Any) -> str:
-        folder = made(**where)
+        folder: str = made(**where)
         other_run_begins()
         return folder
 

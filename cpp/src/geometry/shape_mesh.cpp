@@ -2,6 +2,7 @@
 #include <cmath>
 #include <set>
 
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/limits.hpp"
@@ -42,12 +43,14 @@ std::shared_ptr<const TriangleMesh> revolve(const std::vector<Eigen::Vector2d>& 
   Triangles triangles;
   const auto at = [&](std::size_t ring, int s) { return 2 + static_cast<int>(ring) * segments + s % segments; };
   for (const Eigen::Vector2d& ring : rings) {
+    detail::throw_if_interrupted();
     for (int s = 0; s < segments; ++s) {
       const double angle = detail::kTwoPi * s / segments;
       vertices.emplace_back(ring.x() * std::cos(angle), ring.x() * std::sin(angle), ring.y());
     }
   }
   for (int s = 0; s < segments; ++s) {
+    detail::throw_if_interrupted();
     triangles.push_back({0, at(0, s + 1), at(0, s)});
     triangles.push_back({1, at(rings.size() - 1, s), at(rings.size() - 1, s + 1)});
     for (std::size_t r = 0; r + 1 < rings.size(); ++r) {
@@ -80,13 +83,16 @@ std::shared_ptr<const TriangleMesh> voxel_mesh(const Voxels& voxels) {
   const Eigen::Vector3d origin = voxels.centres->front();
   using Cell = std::array<long, 3>;
   std::set<Cell> cells;
+  detail::InterruptionPoll poll(1024);
   for (const Eigen::Vector3d& c : *voxels.centres) {
+    poll();
     const Eigen::Vector3d index = (c - origin) / h;
     cells.insert({std::lround(index.x()), std::lround(index.y()), std::lround(index.z())});
   }
   Vertices vertices;
   Triangles triangles;
   for (const Cell& cell : cells) {
+    poll();
     const Eigen::Vector3d centre = origin + h * Eigen::Vector3d(cell[0], cell[1], cell[2]);
     for (int axis = 0; axis < 3; ++axis) {
       for (const int sign : {-1, 1}) {

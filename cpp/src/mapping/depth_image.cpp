@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/limits.hpp"
 
@@ -32,6 +33,7 @@ std::vector<Eigen::Vector3d> DepthImage::points() const {
   check();
   std::vector<Eigen::Vector3d> out;
   for (int v = 0; v < camera.height; ++v) {
+    detail::throw_if_interrupted();
     for (int u = 0; u < camera.width; ++u) {
       const float z = at(u, v);
       if (z > 0 && std::isfinite(z)) out.push_back(point(u, v));

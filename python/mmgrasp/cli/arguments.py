@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import math
 import re
-from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -375,43 +375,45 @@ def _address(text: str) -> str:
     return text
 
 
-def _count(least: int, most: int, unit: str) -> Callable[[str], int]:
-    """A whole number in plain digits, with its bounds."""
+@dataclass(frozen=True)
+class _Number:
+    """A number in plain digits, with its bounds and their unit."""
 
-    def read(text: str) -> int:
-        plain = text.isascii() and text.isdigit() and len(text) < 20
-        if not plain or not least <= int(text) <= most:
+    least: float
+    most: float
+    unit: str
+    is_whole: bool = False
+    scale: float = 1
+    """The value taken is so much times what is written."""
+
+    def __call__(self, text: str) -> Any:
+        if self.is_whole:
+            plain = text.isascii() and text.isdigit() and len(text) < 20
+            if not plain or not self.least <= int(text) <= self.most:
+                raise argparse.ArgumentTypeError(
+                    f"{text!r}: must be a whole number, at least {self.least} and at most {self.most} {self.unit}"
+                )
+            return int(text)
+        value = _number(text)
+        if not self.least <= value <= self.most:
             raise argparse.ArgumentTypeError(
-                f"{text!r}: must be a whole number, at least {least} and at most {most} {unit}"
+                f"{text!r}: must be a number from {self.least:.10g} to {self.most:.10g} {self.unit}".rstrip()
             )
-        return int(text)
+        return value * self.scale
 
-    return read
+
+def _count(least: int, most: int, unit: str) -> _Number:
+    return _Number(least, most, unit, is_whole=True)
 
 
 _threads = _count(0, 1024, "threads")
 _seed = _count(0, 2**31 - 1, "(any)")
 
 
-def _length(text: str) -> float:
-    value = _number(text)
-    if not 0 <= value <= 1:
-        raise argparse.ArgumentTypeError(f"{text!r}: must be a number from 0 to 1 m")
-    return value
-
-
-def _voxel(text: str) -> float:
-    value = _number(text)
-    if not 1e-4 <= value <= 10:
-        raise argparse.ArgumentTypeError(f"{text!r}: must be a number from 0.0001 to 10 m")
-    return value
-
-
-def _megabytes(text: str) -> float:
-    value = _number(text)
-    if not 1 <= value <= 1e7:
-        raise argparse.ArgumentTypeError(f"{text!r}: must be a number from 1 to 10000000 MB")
-    return value * 1e6
+_length = _Number(0, 1, "m")
+_voxel = _Number(1e-4, 10, "m")
+_megabytes = _Number(1, 1e7, "MB", scale=1e6)
+_coordinate = _Number(-1e6, 1e6, "")
 
 
 def _direction(text: str) -> list[float]:
@@ -419,13 +421,6 @@ def _direction(text: str) -> list[float]:
     if len(values) != 3 or not all(abs(x) <= 1e6 for x in values) or not any(abs(x) > 1e-6 for x in values):
         raise argparse.ArgumentTypeError(f"{text!r}: must be a direction X,Y,Z other than 0,0,0")
     return values
-
-
-def _coordinate(text: str) -> float:
-    value = _number(text)
-    if not abs(value) <= 1e6:
-        raise argparse.ArgumentTypeError(f"{text!r}: must be a number from -1000000 to 1000000")
-    return value
 
 
 def _number(text: str) -> float:

@@ -132,12 +132,23 @@ def options_page() -> str:
     """docs/options.md."""
     lines = ["# Options of a scenario", "", "Written by `./dev docs` from the library's own defaults.", ""]
     for section, title, table, elsewhere in SECTIONS:
-        lines += [f"## `{section}`: {title}", "", "| option | default | meaning |", "|---|---|---|"]
-        lines += [
-            f"| `{name}` | {default} | {help_} |" for name, (default, help_) in table().items() if name not in elsewhere
-        ]
+        bounds = _bounds(table)
+        head = "| option | default | from, to | meaning |" if bounds else "| option | default | meaning |"
+        lines += [f"## `{section}`: {title}", "", head, "|---" * (head.count("|") - 1) + "|"]
+        for name, (default, help_) in table().items():
+            if name in elsewhere:
+                continue
+            least_most = bounds.get(name)
+            within = f" {least_most[0]:g}, {least_most[1]:g} |" if least_most else " |" if bounds else ""
+            lines.append(f"| `{name}` | {default} |{within} {help_} |")
         lines.append("")
     return "\n".join(lines)
+
+
+def _bounds(table: Callable[[], dict[str, Any]]) -> dict[str, tuple[float, float]]:
+    """Those of a table that files may set, by the option's name."""
+    of_table = getattr(_core, table.__name__.replace("_option_table", "_option_bounds"), None)
+    return of_table() if of_table else {}
 
 
 if __name__ == "__main__":

@@ -206,6 +206,12 @@ class Node:
             self.fail(f"must be >= {least}")
         return value
 
+    def within(self, bounds: tuple[float, float]) -> None:
+        """Refuses a number outside of its bounds (those of an option table)."""
+        least, most = bounds
+        if not least <= self.raw <= most:
+            self.fail(f"must be in [{least:g}, {most:g}]")
+
     def boolean(self) -> bool:
         """true or false."""
         if not isinstance(self.raw, bool):

@@ -154,13 +154,16 @@ def plan_part_supply(
     given = {"seed": seed, "threads": threads}
     options = scenario.options | {key: value for key, value in given.items() if value is not None}
     scenario = replace(scenario, options=options)  # the caller's keeps its own
-    problem = scenario.problem()
-    loaded = time.perf_counter()
-    reach = scenario.reach_database(progress)
-    timings = [("scenario", loaded - begun), ("reach database", time.perf_counter() - loaded)]
-    if by_number(scenario):
-        return _plan_by_number(scenario, reach, timings, progress)
-    return ScenarioPlan(scenario, _core.plan_part_supply(problem, reach, progress=progress), timings)
+    try:  # what only shows with the robot's reach known: cells too fine for it, too large a grid
+        problem = scenario.problem()
+        loaded = time.perf_counter()
+        reach = scenario.reach_database(progress)
+        timings = [("scenario", loaded - begun), ("reach database", time.perf_counter() - loaded)]
+        if by_number(scenario):
+            return _plan_by_number(scenario, reach, timings, progress)
+        return ScenarioPlan(scenario, _core.plan_part_supply(problem, reach, progress=progress), timings)
+    except InvalidInput as error:
+        raise InvalidInput(f"{scenario.source}: {error}") from None
 
 
 def _plan_by_number(

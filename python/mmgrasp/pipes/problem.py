@@ -260,6 +260,7 @@ def _read_compared(root: Node, pipe: Pipe, gripper: Hand) -> list[Grasp]:
 def _read_options(root: Node) -> tuple[dict[str, Any], dict[str, Any]]:
     """Keywords of follow_object_path and of the search. Weights, scales and limits have sections of their own."""
     table = {key: value for key, value in _core._object_path_option_table().items() if key not in NOT_HERE}
+    bounds = _core._object_path_option_bounds()
     path: dict[str, Any] = {}
     search: dict[str, Any] = {}
     for key, node in root["options"].items() if "options" in root else []:
@@ -283,4 +284,6 @@ def _read_options(root: Node) -> tuple[dict[str, Any], dict[str, Any]]:
             search[key] = node.integer(least=1 if key.startswith("max_") else 0)
         else:
             node.refuse_key([*table, *SEARCH_OPTIONS])
+        if key in bounds:
+            node.within(bounds[key])
     return path, search

@@ -247,11 +247,13 @@ def width_between(shapes: list[LinkShape], T_part_hand: np.ndarray, gripper: Han
 
 def _synthesis_options(node: Node) -> dict[str, Any]:
     table = {k: v for k, v in _core._synthesis_option_table().items() if k != "threads"}
+    bounds = _core._synthesis_option_bounds()
     options: dict[str, Any] = {}
     for key, value in node.items():
         if key not in table:
             value.refuse_key(list(table))
         options[key] = value.integer() if isinstance(table[key][0], int) else value.number()
+        value.within(bounds[key])
     return options
 
 

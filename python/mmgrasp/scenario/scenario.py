@@ -18,6 +18,7 @@ from .._progress import Progress
 from ..documents.reading import RENAMED, Node, read_yaml
 from . import cell_bodies, floor_map
 from .contact_rules import ContactRules, read_contact_rules
+from .grid_size import check_grid_size
 from .robot_section import RobotSetup, choose_sections, find_file, read_setup
 from .scan_section import ScanReader, moved
 from .schema import with_article
@@ -30,6 +31,8 @@ TOP_OPTIONAL = (
 )
 FLOOR = "floor"
 REPLACING = "replacing a damaged reachability database"  # the stage that ReachDatabase.load_or_build reports
+MOST_TRAYS = 1000
+MOST_OBSTACLES = 10_000
 LEAST_SAMPLES = 10_000  # of the database of what the arm reaches
 SHAPE_KEYS = "box cylinder sphere mesh shapes scale"
 FILE_KEYS = {"map": "height unknown", "octree": "unknown within", "cloud": "cell within"}  # obstacles read from files
@@ -159,7 +162,9 @@ def _read_scenario(
 ) -> Scenario:
     _check_header(root)
     start, goal = np.array(root["start"].numbers(3)), np.array(root["goal"].numbers(3))
-    uncertainty = root["positioning_uncertainty"].number(least=0)
+    uncertainty = root["positioning_uncertainty"].number(
+        least=0, most=_core._supply_option_bounds()["positioning_uncertainty"][1]
+    )
     covariance = _read_covariance(root["arrival_covariance"]) if "arrival_covariance" in root else None
     options = _read_options(root, "options", _core._supply_option_table(), {"positioning_uncertainty"})
     reach = _read_options(root, "reach", _core._reach_option_table(), set())
@@ -174,6 +179,7 @@ def _read_scenario(
     types = read_part_types(root["part_types"], setup.gripper) if "part_types" in root else {}
     scans = ScanReader(setup.gripper, _in_world(obstacles), find_file, progress)
     trays = _read_trays(root, types, setup, scans)
+    check_grid_size(root, trays, {key: value for key, (value, _) in _core._supply_option_table().items()} | options)
     for tray in trays:
         obstacles.append(Obstacle(f"tray {tray.tray.name}", tray.tray.T_world_tray, tray.walls))
     typed = [(p.shapes, p.T_world_part) for t in trays if t.scan is None for p in t.tray.parts]
@@ -247,7 +253,10 @@ def _read_covariance(node: Node) -> np.ndarray:
 
 def _read_obstacles(root: Node) -> list[Obstacle]:
     out = []
-    for node in root["obstacles"].elements() if "obstacles" in root else []:
+    nodes = root["obstacles"].elements() if "obstacles" in root else []
+    if len(nodes) > MOST_OBSTACLES:
+        root["obstacles"].fail(f"must be at most {MOST_OBSTACLES} obstacles: join some, in a mesh, an octree or a map")
+    for node in nodes:
         node.mapping("name", OBSTACLE_KEYS)
         pose = node["pose"].pose() if "pose" in node else np.eye(4)
         out.append(Obstacle(node["name"].label(), pose, _read_obstacle_shapes(node)))
@@ -286,6 +295,8 @@ def _in_world(obstacles: list[Obstacle]) -> list[LinkShape]:
 
 
 def _read_trays(root: Node, types: dict[str, PartType], setup: RobotSetup, scans: ScanReader) -> list[TraySetup]:
+    if len(root["trays"].elements()) > MOST_TRAYS:
+        root["trays"].fail(f"must be at most {MOST_TRAYS} trays: plan for some of them at a time")
     trays = [read_tray(node, types, setup.gripper, scans) for node in root["trays"].elements()]
     if not any(tray.targets for tray in trays):
         root["trays"].fail("at least one part of one tray must be a target")

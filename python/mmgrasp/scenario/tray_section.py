@@ -16,6 +16,8 @@ from .scan_section import ScanReader, TrayScan, moved
 from .shapes import read_shapes
 from .tray_body import BODY_KEYS, STEEPEST, WALL, TrayBody, read_tray_body, tilt
 
+MOST_PARTS = 1000  # in one tray
+MOST_HEADINGS = 360  # of one tray
 GAP = 0.001  # parts rest this far above the floor, so that nothing touches at rest [m]
 
 
@@ -150,6 +152,8 @@ def read_tray(node: Node, types: dict[str, PartType], gripper: Hand, scans: Scan
         node.fail("must have either parts or scan")
     headings = node["headings"].numbers() if "headings" in node else []
     scan, wanted, kinds = None, {}, {}
+    if len(headings) > MOST_HEADINGS:
+        node["headings"].fail(f"must be at most {MOST_HEADINGS} headings: each is a layer of the base grid")
     if "scan" in node:
         _check_scannable(node, T_world_tray, body)
         parts, targets, scan = _scanned(node, types, name, T_world_tray, list(body.size), scans)
@@ -281,8 +285,8 @@ def _grid(node: Node, types: dict[str, PartType]) -> list[Placed]:
     counts = [entry.integer(least=1) for entry in node["grid"].elements()]
     if len(counts) != 2:
         node["grid"].fail("must be two numbers: how many along x and along y")
-    if counts[0] * counts[1] > 1000:
-        node["grid"].fail("must not place more than 1000 parts in one tray")
+    if counts[0] * counts[1] > MOST_PARTS:
+        node["grid"].fail(f"must not place more than {MOST_PARTS} parts in one tray")
     spacing = node["spacing"].numbers(2, above=0)
     yaw = node["yaw"].number() if "yaw" in node else 0.0
     placed: list[Placed] = []
@@ -295,6 +299,8 @@ def _grid(node: Node, types: dict[str, PartType]) -> list[Placed]:
 
 def _list(node: Node, types: dict[str, PartType]) -> list[Placed]:
     placed: list[Placed] = []
+    if len(node.elements()) > MOST_PARTS:
+        node.fail(f"must not list more than {MOST_PARTS} parts in one tray")
     for entry in node.elements():
         entry.mapping("type xyz", "name rpy")
         kind = _kind(entry["type"], types)

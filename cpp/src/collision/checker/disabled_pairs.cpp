@@ -6,6 +6,7 @@
 #include "collision/checker/never_touch.hpp"
 #include "collision/checker/pair_plan.hpp"
 #include "collision/narrow/narrow.hpp"
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/parallel.hpp"
@@ -15,7 +16,8 @@ namespace mmgrasp {
 
 namespace {
 
-constexpr int kMaxBoxes = 10000;  // of joint values in a proof: more prove few further pairs
+constexpr int kMaxBoxes = 10000;    // of joint values in a proof: more prove few further pairs
+constexpr double kMostPoses = 1e9;  // of links in all proofs, a minute of processor time: beyond, each has fewer boxes
 
 struct BodyPair {
   int a, b;               // bodies
@@ -38,10 +40,11 @@ bool adjacent(const Robot& robot, int link_a, int link_b) {
       const int joint = robot.links()[link].parent_joint;
       if (joint < 0) return false;
       movable += robot.joints()[joint].type != JointType::fixed;
+      if (movable > 1) return false;  // soon: robots of many links have very many pairs
       link = robot.joints()[joint].parent_link;
       if (link != to && !robot.links()[link].collisions.empty()) return false;
     }
-    return movable <= 1;
+    return true;
   };
   return climb(link_a, link_b) || climb(link_b, link_a);
 }
@@ -113,6 +116,7 @@ Robot compute_disabled_pairs(const Robot& robot, const DisabledPairsOptions& opt
   std::map<std::pair<int, int>, DisabledReason> disabled = robot.disabled_pairs();
   std::vector<BodyPair> open;
   for (std::size_t i = 0; i < snapshot.bodies.size(); ++i) {
+    detail::throw_if_interrupted();
     for (std::size_t j = i + 1; j < snapshot.bodies.size(); ++j) {
       const int a = snapshot.bodies[i].link, b = snapshot.bodies[j].link;
       if (robot.pair_disabled(a, b)) continue;
@@ -131,9 +135,11 @@ Robot compute_disabled_pairs(const Robot& robot, const DisabledPairsOptions& opt
   // Stopped early the counts mean nothing: only what is known for certain is returned then.
   bool complete = parallel_for(options.samples, threads, work, monitor, "self-collision pairs");
   const detail::NeverTouch never_touch(snapshot);
+  const double poses = static_cast<double>(open.size()) * static_cast<double>(robot.links().size());
+  const int boxes = static_cast<int>(std::min<double>(kMaxBoxes, kMostPoses / std::max(poses, 1.0)));
   const auto prove = [&](std::size_t pair, int) {
     BodyPair& one = open[pair];
-    one.never = one.count() == 0 && (options.trust_samples || never_touch.proven(one.a, one.b, kMaxBoxes));
+    one.never = one.count() == 0 && (options.trust_samples || never_touch.proven(one.a, one.b, boxes));
   };
   complete = complete && parallel_for(open.size(), threads, prove, monitor, "pairs that never touch");
   for (const BodyPair& pair : open) {

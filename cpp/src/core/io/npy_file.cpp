@@ -99,57 +99,58 @@ void NpyWriter::finish(std::uint64_t rows) {
   if (closed != 0) refuse();
 }
 
-namespace {
-
-constexpr std::uint64_t kLargestCopy = 256'000'000;  // Larger files are mapped: a copy would take their size in memory.
-
-/// False, with errno, when the file ends early or cannot be read.
-bool read_all(int file, unsigned char* to, std::uint64_t bytes) {
-  while (bytes > 0) {
-    const ::ssize_t got = ::read(file, to, bytes);
-    if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) {
-      if (got == 0) errno = EIO;  // cut short since its size was asked for
-      return false;
-    }
-    to += got;
-    bytes -= static_cast<std::uint64_t>(got);
-  }
-  return true;
-}
-
-}  // namespace
-
-MappedFile::MappedFile(const std::string& path, std::uint64_t bytes) : size_(bytes) {
-  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0) throw IoError(path + ": cannot be opened (" + std::strerror(errno) + ")");
+FileCopy::FileCopy(const std::string& path, std::uint64_t bytes, std::uint64_t read_whole) : path_(path), size_(bytes) {
+  file_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file_ < 0) throw IoError(path + ": cannot be opened (" + std::strerror(errno) + ")");
   struct stat status;
-  const bool known = ::fstat(file, &status) == 0 && S_ISREG(status.st_mode);
+  const bool known = ::fstat(file_, &status) == 0 && S_ISREG(status.st_mode);
   const auto found = known ? static_cast<std::uint64_t>(status.st_size) : 0;
   if (!known || found != bytes) {
-    ::close(file);
+    ::close(file_);
     if (!known) throw IoError(path + ": not a file");
     throw IoError(path + ": " + (found < bytes ? "truncated: " : "bytes after the end: ") + std::to_string(found) +
                   " bytes, " + std::to_string(bytes) + " expected");
   }
-  const bool copied = bytes <= kLargestCopy;
-  void* at = copied ? ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0)
-                    : ::mmap(nullptr, bytes, PROT_READ, MAP_SHARED, file, 0);
-  int failure = errno;
-  if (copied && at != MAP_FAILED && !read_all(file, static_cast<unsigned char*>(at), bytes)) {
-    failure = errno;
-    ::munmap(at, bytes);
-    at = MAP_FAILED;
+  // Memory is used for what is read only.
+  void* at = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (at == MAP_FAILED) {
+    const int failure = errno;
+    ::close(file_);
+    // Not the file's fault: who replaces damaged files must not take it for one.
+    if (failure == ENOMEM) throw Error(path + ": no address space for it: " + std::strerror(failure));
+    throw IoError(path + ": no memory for it (" + std::strerror(failure) + ")");
   }
-  ::close(file);
-  // Not the file's fault: who replaces damaged files must not take it for one.
-  if (at == MAP_FAILED && failure == ENOMEM) throw Error(path + ": no address space for it: " + std::strerror(failure));
-  if (at == MAP_FAILED) throw IoError(path + ": cannot be mapped into memory (" + std::strerror(failure) + ")");
-  data_ = static_cast<const unsigned char*>(at);
+  data_ = static_cast<unsigned char*>(at);
+  if (bytes > read_whole) return;
+  try {
+    read(0, bytes);
+  } catch (...) {
+    ::munmap(data_, size_);
+    ::close(file_);
+    throw;
+  }
+  ::close(file_);
+  file_ = -1;
 }
 
-MappedFile::~MappedFile() {
-  ::munmap(const_cast<unsigned char*>(data_), size_);
+FileCopy::~FileCopy() {
+  if (file_ >= 0) ::close(file_);
+  ::munmap(data_, size_);
+}
+
+void FileCopy::read(std::uint64_t first, std::uint64_t end) const {
+  if (!is_whole()) read_to(data_ + first, first, end);
+}
+
+void FileCopy::read_to(unsigned char* to, std::uint64_t first, std::uint64_t end) const {
+  while (first < end) {
+    const ::ssize_t got = ::pread(file_, to, end - first, static_cast<::off_t>(first));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) throw IoError(path_ + ": cannot be read (" + std::strerror(errno) + ")");
+    if (got == 0) throw IoError(path_ + ": truncated: no bytes from " + std::to_string(first) + " on any more");
+    to += got;
+    first += static_cast<std::uint64_t>(got);
+  }
 }
 
 }  // namespace mmgrasp::detail

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "grasp/assembly/clip_polygon.hpp"
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/geometry/detail/mesh_topology.hpp"
@@ -35,12 +36,15 @@ std::vector<int> given_or_all(const TriangleMesh& mesh, std::vector<int> faces) 
 /// Faces that share an edge with each of `faces`, among them.
 std::map<int, std::vector<int>> neighbours(const TriangleMesh& mesh, const std::vector<int>& faces) {
   std::map<std::pair<int, int>, std::vector<int>> of_edge;
+  detail::InterruptionPoll poll(256);
   for (const int f : faces) {
+    poll();
     const auto& t = mesh.triangles[f];
     for (int i = 0; i < 3; ++i) of_edge[std::minmax(t[i], t[(i + 1) % 3])].push_back(f);
   }
   std::map<int, std::vector<int>> out;
   for (const auto& [edge, sharing] : of_edge) {
+    poll();
     for (const int f : sharing) {
       for (const int g : sharing) {
         if (f != g) out[f].push_back(g);
@@ -87,8 +91,10 @@ bool apart(const Polygon& a, const Polygon& b) {
 /// Where the shadows of two facets lie on each other, in convex pieces.
 std::vector<Polygon> overlap_of(const std::vector<Polygon>& first, const std::vector<Polygon>& second) {
   std::vector<Polygon> out;
+  detail::InterruptionPoll poll(256);
   for (const Polygon& a : first) {
     for (const Polygon& b : second) {
+      poll();
       if (apart(a, b)) continue;
       Polygon piece = a;
       for (std::size_t i = 0; i < b.size() && !piece.empty(); ++i) {
@@ -161,6 +167,7 @@ void add_pair(const TriangleMesh& mesh, const Facet& a, const Facet& b, const As
     double near = detail::kInfinity, far = -detail::kInfinity;
     std::vector<Polygon> strip;  // what fingers cover
     for (const Polygon& whole : overlap) {
+      detail::throw_if_interrupted();
       Polygon piece = detail::clip_polygon(whole, {across, across.dot(*middle) + options.finger_width / 2});
       strip.push_back(detail::clip_polygon(piece, {-across, -across.dot(*middle) + options.finger_width / 2}));
       for (const Eigen::Vector3d& p : strip.back()) {
@@ -208,7 +215,9 @@ std::vector<Facet> planar_facets(const TriangleMesh& mesh, const std::vector<int
   require(angle > 0 && angle <= 0.5, "angle", angle, "must be in (0, 0.5] [rad]");
   std::vector<int> order = given_or_all(mesh, faces);
   const auto beside = neighbours(mesh, order);
+  detail::InterruptionPoll poll(1024);
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+    poll();
     return scaled_normal(mesh, a).squaredNorm() > scaled_normal(mesh, b).squaredNorm();
   });
   std::vector<char> taken(mesh.triangles.size(), false);
@@ -221,6 +230,7 @@ std::vector<Facet> planar_facets(const TriangleMesh& mesh, const std::vector<int
     taken[seed] = true;
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (std::size_t i = 0; i < facet.faces.size(); ++i) {
+      poll();
       const int face = facet.faces[i];
       const Eigen::Vector3d scaled = scaled_normal(mesh, face);
       const auto& t = mesh.triangles[face];
@@ -252,8 +262,10 @@ std::vector<AssemblyGrasp> jaw_grasps(const TriangleMesh& mesh, const std::vecto
   const double least_area = options.min_contact * options.min_contact;
   while (!facets.empty() && facets.back().area < least_area) facets.pop_back();
   std::vector<AssemblyGrasp> out;
+  detail::InterruptionPoll poll;
   for (std::size_t i = 0; i < facets.size(); ++i) {
     for (std::size_t k = i + 1; k < facets.size(); ++k) {
+      poll();
       if (facets[i].normal.dot(facets[k].normal) <= -std::cos(options.parallel_angle))
         add_pair(mesh, facets[i], facets[k], options, out);
     }

@@ -8,6 +8,7 @@
 #include "mmgrasp/collision/checker.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/core/random.hpp"
 
 namespace mmgrasp {
@@ -79,10 +80,10 @@ class Placer {
     return false;
   }
 
-  std::optional<PlacedPart> place() {
+  std::optional<PlacedPart> place(const CancelToken& stop) {
     for (const bool on_others : {false, true}) {
       if (on_others && !options_.stack) break;
-      for (int i = 0; i < options_.draws; ++i) {
+      for (int i = 0; i < options_.draws && !stop.stopped(); ++i) {
         std::optional<PlacedPart> found = drop(on_others);
         if (found) {
           keep(*found);
@@ -182,7 +183,7 @@ class Placer {
 
 void PlacementOptions::check() const {
   require(count >= 0, "count", count, "must be zero or positive");
-  require(draws > 0, "draws", draws, "must be positive");
+  require_within(draws, 1, 1'000'000, "draws", "");
   require(std::isfinite(clearance) && clearance > 0, "clearance", clearance, "must be positive and finite [m]");
 }
 
@@ -211,7 +212,7 @@ RandomPlacement random_placement(const std::vector<LinkShape>& part, const Vecto
   require(placer.fits_anywhere(), "part", "its resting poses", "must fit between the walls of the empty tray");
   RandomPlacement out;
   for (int i = 0; i < options.count && !monitor.stopped(); ++i) {
-    const auto placed = placer.place();
+    const auto placed = placer.place(monitor.stop);
     placed ? out.parts.push_back(*placed) : void(++out.not_placed);
     monitor.report("placing parts", (i + 1.0) / options.count);
   }

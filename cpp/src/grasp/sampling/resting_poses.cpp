@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/grasp/random_placement.hpp"
 
@@ -50,6 +51,7 @@ struct Face {
 std::vector<Face> faces_of(const TriangleMesh& hull, double size) {
   std::vector<Face> faces;
   for (int i = 0; i < static_cast<int>(hull.triangles.size()); ++i) {
+    detail::throw_if_interrupted();
     const auto& t = hull.triangles[i];
     const Vector3d a = hull.vertices[t[0]];
     const Vector3d n = (hull.vertices[t[1]] - a).cross(hull.vertices[t[2]] - a).normalized();

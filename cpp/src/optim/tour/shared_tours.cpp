@@ -5,6 +5,7 @@
 #include <numeric>
 #include <string>
 
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/optim/tour.hpp"
@@ -66,6 +67,7 @@ class Sharing {
       const std::vector<double> alone = durations_of_subsets(robot);
       std::vector<double> with(masks, detail::kInfinity);
       for (std::size_t mask = 0; mask < masks; ++mask) {
+        detail::throw_if_interrupted();
         for (std::size_t own = mask;; own = (own - 1) & mask) {
           const double longest = std::max(so_far[mask ^ own], alone[own]);
           if (longest < with[mask]) {
@@ -139,6 +141,7 @@ class Sharing {
       std::vector<double> with(best.size(), detail::kInfinity);
       for (int end = 0; end <= n_; ++end) {
         for (int begin = 0; begin <= end; ++begin) {
+          detail::throw_if_interrupted();
           const std::vector<int> piece(tour.begin() + begin, tour.begin() + end);
           const double longest = std::max(best[begin], duration(robot, piece));
           if (longest >= with[end]) continue;
@@ -192,9 +195,11 @@ class Sharing {
   }
 
   std::vector<int> inserted(int robot, const std::vector<int>& order, int stop) const {
+    detail::InterruptionPoll poll(16);
     std::vector<int> best;
     double least = detail::kInfinity;
     for (std::size_t place = 0; place <= order.size(); ++place) {
+      poll();
       std::vector<int> trial = order;
       trial.insert(trial.begin() + static_cast<std::ptrdiff_t>(place), stop);
       const double found = duration(robot, trial);
@@ -212,6 +217,7 @@ class Sharing {
       for (int i = 0; i < n_; ++i) home = std::min(home, drive_(i, goal(robot)));
     }
     for (int stop = 0; stop < n_; ++stop) {
+      detail::throw_if_interrupted();
       double alone = detail::kInfinity, arrival = detail::kInfinity;
       for (int robot = 0; robot < robots_; ++robot) {
         alone = std::min(alone, duration(robot, {stop}));
@@ -234,6 +240,7 @@ class Sharing {
     const auto size = drive_.rows();
     for (Eigen::Index via = 0; via < n_ && triangle_ == 1; ++via) {
       for (Eigen::Index i = 0; i < size && triangle_ == 1; ++i) {
+        detail::throw_if_interrupted();
         for (Eigen::Index j = 0; j < size; ++j) {
           if (i != via && j != via && i != j &&
               drive_(i, via) + service(static_cast<int>(via)) + drive_(via, j) < drive_(i, j) * (1 - kGain)) {

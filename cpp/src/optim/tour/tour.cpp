@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "optim/tour/tour_bounds.hpp"
@@ -46,7 +47,9 @@ std::vector<int> exact_order(const Eigen::MatrixXd& lengths, int n) {
   std::vector<double> best(masks * n, detail::kInfinity);
   std::vector<signed char> previous(masks * n, -1);
   for (int j = 0; j < n; ++j) best[(std::size_t{1} << j) * n + j] = lengths(start, j);
+  detail::InterruptionPoll poll;
   for (std::size_t mask = 1; mask < masks; ++mask) {
+    poll();
     for (int last = 0; last < n; ++last) {
       const double so_far = best[mask * n + last];
       if (so_far == detail::kInfinity) continue;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/optim/assignment.hpp"
 
@@ -24,6 +25,7 @@ double spanning_tree(const Eigen::MatrixXd& lengths, const Eigen::VectorXd& pric
   double total = 0;
   Eigen::Index at = 0;
   for (Eigen::Index joined = 1; joined < n; ++joined) {
+    detail::throw_if_interrupted();
     in[at] = 1;
     Eigen::Index next = -1;
     for (Eigen::Index j = 0; j < n; ++j) {

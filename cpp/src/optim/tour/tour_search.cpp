@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/random.hpp"
 
@@ -32,6 +33,7 @@ std::vector<int> cheapest_insertion(const Eigen::MatrixXd& lengths, int n) {
   };
   for (int stop = 0; stop < n; ++stop) look(stop, n);
   for (int round = 0; round < n; ++round) {
+    throw_if_interrupted();
     int chosen = -1;
     for (int stop = 0; stop < n; ++stop) {
       if (placed[stop]) continue;
@@ -45,6 +47,7 @@ std::vector<int> cheapest_insertion(const Eigen::MatrixXd& lengths, int n) {
       if (placed[stop]) continue;
       if (best[stop].before == before) {  // that gap is no more
         best[stop] = {};
+        throw_if_interrupted();
         for (int at = n; at != n + 1; at = next[at]) look(stop, at);
       } else {
         look(stop, before);
@@ -104,6 +107,7 @@ class Way {
     double best = -kGain * (1 + length());
     int best_i = -1, best_j = -1;
     for (int i = 1; i < last() - 1; ++i) {
+      poll_();
       for (int j = i + 1; j < last(); ++j) {
         const double change =
             d(i - 1, j) + d(i, j + 1) - d(i - 1, i) - d(j, j + 1) + inside_reversed(i, j) - inside(i, j);
@@ -127,6 +131,7 @@ class Way {
     int best_i = -1, best_j = -1, best_gap = -1;
     bool best_reversed = false;
     for (int i = 1; i < last(); ++i) {
+      poll_();
       for (int j = i; j < std::min(last(), i + kLongestRun); ++j) {
         const double out = d(i - 1, j + 1) - d(i - 1, i) - d(j, j + 1);
         const double turned = inside_reversed(i, j) - inside(i, j);
@@ -158,6 +163,7 @@ class Way {
   const Eigen::MatrixXd* lengths_;
   std::vector<int> at_;
   std::vector<double> ahead_, back_;
+  InterruptionPoll poll_{64};
   double looked_ = 0;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/hash.hpp"
@@ -221,7 +222,9 @@ double CapabilityMap::score(const Poses& T_world_tip, const Pose& T_world_root, 
   const Pose T_root_world = T_world_root.inverse();
   const Eigen::Vector3d approach = data_->options.approach.normalized();
   double sum = 0;
+  detail::InterruptionPoll poll(256);
   for (const Pose& pose : T_world_tip) {
+    poll();
     const Pose T = T_root_world * pose;
     const std::int64_t at = voxel_at(T.translation());
     if (at < 0) continue;

@@ -291,6 +291,7 @@ ReachDatabase ReachDatabase::build_to(const std::string& folder, const JointGrou
       layout.shape[0] = rows;
       data->files.push_back(std::make_unique<detail::CheckedFile>(file, layout, writer.checksums()));
       data->configurations = {reinterpret_cast<const std::uint16_t*>(data->files[0]->payload()), rows * arm.size()};
+      data->configuration_file = data->files[0].get();
       data->complete();
       data->measure();
       detail::write_database(*data, written, path, &writer);

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "mmgrasp/core/detail/crc32.hpp"
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 
@@ -32,30 +33,68 @@ namespace detail {
 
 CheckedFile::CheckedFile(const std::string& path_in, const NpyLayout& layout, std::vector<std::uint32_t> checksums_in)
     : path(path_in),
-      map(path_in, layout.header().size() + layout.payload_bytes()),
+      copy(path_in, layout.header().size() + layout.payload_bytes()),
       header_bytes(layout.header().size()),
       checksums(std::move(checksums_in)),
-      checked(checksums.size()) {
+      state_(checksums.size()) {
   const std::string header = layout.header();
-  if (std::memcmp(map.data(), header.data(), header.size()) != 0)
+  copy.read(0, header.size());
+  if (std::memcmp(copy.data(), header.data(), header.size()) != 0)
     throw IoError(path + ": corrupt: its header is not that of an array of type " + layout.dtype +
                   " with the shape that meta.json states");
-  if (checksums.size() != (map.size() + kChecksumChunk - 1) / kChecksumChunk)
+  if (checksums.size() != (copy.size() + kChecksumChunk - 1) / kChecksumChunk)
     throw IoError(path + ": corrupt: meta.json has " + std::to_string(checksums.size()) + " checksums for it");
 }
 
-void CheckedFile::check_chunk(std::size_t chunk) const {
-  const std::uint64_t begin = chunk * kChecksumChunk, end = std::min<std::uint64_t>(begin + kChecksumChunk, map.size());
-  if (crc32(map.data() + begin, end - begin) != checksums[chunk])
+std::pair<std::uint64_t, std::uint64_t> CheckedFile::bytes_of(std::size_t chunk) const {
+  const std::uint64_t begin = chunk * kChecksumChunk;
+  return {begin, std::min<std::uint64_t>(begin + kChecksumChunk, copy.size())};
+}
+
+void CheckedFile::compare(std::size_t chunk, const unsigned char* bytes) const {
+  const auto [begin, end] = bytes_of(chunk);
+  if (crc32(bytes, end - begin) != checksums[chunk])
     throw IoError(path + ": corrupt: bytes " + std::to_string(begin) + " to " + std::to_string(end - 1) +
                   " differ from their checksum");
-  checked[chunk].store(1, std::memory_order_release);
+}
+
+void CheckedFile::check_chunk(std::size_t chunk) const {
+  const auto [begin, end] = bytes_of(chunk);
+  if (copy.is_whole() || state_[chunk].load(std::memory_order_acquire) == kChecked) {
+    compare(chunk, copy.data() + begin);
+    return;
+  }
+  std::vector<unsigned char> bytes(end - begin);  // not kept: all of a large file may be more than memory holds
+  copy.read_to(bytes.data(), begin, end);
+  compare(chunk, bytes.data());
+}
+
+void CheckedFile::read_chunk(std::size_t chunk) const {
+  std::uint8_t found = kUnread;
+  while (!state_[chunk].compare_exchange_weak(found, kBusy, std::memory_order_acquire)) {
+    if (found == kChecked) return;
+    found = kUnread;
+    std::this_thread::yield();
+  }
+  try {
+    const auto [begin, end] = bytes_of(chunk);
+    copy.read(begin, end);
+    compare(chunk, copy.data() + begin);
+  } catch (...) {
+    state_[chunk].store(kUnread, std::memory_order_release);
+    throw;
+  }
+  state_[chunk].store(kChecked, std::memory_order_release);
 }
 
 void CheckedFile::ensure(std::uint64_t first_byte, std::uint64_t end_byte) const {
   const std::size_t last = (header_bytes + end_byte - 1) / kChecksumChunk;
-  for (std::size_t chunk = (header_bytes + first_byte) / kChecksumChunk; chunk <= last; ++chunk)
-    if (checked[chunk].load(std::memory_order_acquire) == 0) check_chunk(chunk);
+  for (std::size_t chunk = (header_bytes + first_byte) / kChecksumChunk; chunk <= last; ++chunk) {
+    if (state_[chunk].load(std::memory_order_acquire) != kChecked) {
+      throw_if_interrupted();
+      read_chunk(chunk);
+    }
+  }
 }
 
 }  // namespace detail

@@ -78,21 +78,30 @@ struct OwnArrays {
   std::vector<std::uint16_t> configurations;
 };
 
-/// A file of a database on disk, and which of its chunks were compared with their checksums.
+/// A file of a database on disk, and which of its chunks were read and compared with their checksums.
 struct CheckedFile {
   CheckedFile(const std::string& path_in, const NpyLayout& layout, std::vector<std::uint32_t> checksums_in);
 
-  /// Compares the chunks that hold these bytes of the array, unless that was done before. Throws IoError. Safe from
-  /// several threads.
+  /// Reads and compares the chunks that hold these bytes of the array, unless that was done before. Throws IoError.
+  /// Safe from several threads.
   void ensure(std::uint64_t first_byte, std::uint64_t end_byte) const;
+  /// Compares a chunk as it is in memory or, as long as nobody asked for it, in the file. Throws IoError.
   void check_chunk(std::size_t chunk) const;
-  const unsigned char* payload() const { return map.data() + header_bytes; }
+  /// Nothing but what was ensured may be looked at.
+  const unsigned char* payload() const { return copy.data() + header_bytes; }
 
   std::string path;
-  MappedFile map;
+  FileCopy copy;
   std::size_t header_bytes;
   std::vector<std::uint32_t> checksums;
-  mutable std::vector<std::atomic<std::uint8_t>> checked;
+
+ private:
+  enum ChunkState : std::uint8_t { kUnread, kBusy, kChecked };
+  std::pair<std::uint64_t, std::uint64_t> bytes_of(std::size_t chunk) const;
+  void compare(std::size_t chunk, const unsigned char* bytes) const;
+  void read_chunk(std::size_t chunk) const;
+
+  mutable std::vector<std::atomic<std::uint8_t>> state_;
 };
 
 }  // namespace mmgrasp::detail

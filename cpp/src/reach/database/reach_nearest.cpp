@@ -204,9 +204,8 @@ int ReachDatabase::nearest(const Pose& T_base_tip, int count, Eigen::MatrixXd& o
     if (p + 1 < position_count) query.ask_for(positions[p + 1]);
     query.visit(positions[p], bounds, nearest);
   }
-  const std::size_t joints = data_->joints;
   for (std::size_t i = 0; i < found.size(); ++i)
-    data_->arm.decode(data_->configurations.data + found[i].index * joints, 1,
+    data_->arm.decode(data_->stored(found[i].index, found[i].index + 1), 1,
                       out.col(static_cast<Eigen::Index>(i)).data());
   return static_cast<int>(found.size());
 }

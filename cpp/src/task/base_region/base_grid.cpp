@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <string>
 
 #include "mmgrasp/core/error.hpp"
 #include "task/base_region/search_area.hpp"
@@ -38,8 +40,13 @@ BaseGrid make_base_grid(const PartSupplyProblem& problem, const ReachDatabase& d
   const auto down = [&](double v) { return std::floor(v / grid.resolution + 1e-9); };
   const auto up = [&](double v) { return std::ceil(v / grid.resolution - 1e-9); };
   const Eigen::Vector2d cells(up(box.max().x()) - down(box.min().x()), up(box.max().y()) - down(box.min().y()));
-  require(cells.prod() * static_cast<double>(grid.headings.size()) <= kMaxCells, "grid.resolution", grid.resolution,
-          "must be coarser: the base grid would have more than 20 million cells");
+  if (!(cells.prod() * static_cast<double>(grid.headings.size()) <= kMaxCells)) {
+    char wide[64];
+    std::snprintf(wide, sizeof(wide), "%.0f x %.0f cells of %g m", cells.x(), cells.y(), grid.resolution);
+    throw InvalidInput("base grid: " + std::string(wide) + " in " + std::to_string(grid.headings.size()) +
+                       " headings are more than 20 million: list fewer headings of trays, raise grid_resolution, lower "
+                       "grid_max_distance, or plan for trays that are nearer to each other");
+  }
   grid.origin = Eigen::Vector2d(down(box.min().x()), down(box.min().y())) * grid.resolution;
   grid.nx = static_cast<int>(cells.x());
   grid.ny = static_cast<int>(cells.y());

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/optim/set_cover.hpp"
@@ -9,6 +10,8 @@
 
 namespace mmgrasp {
 namespace {
+
+constexpr double kCoverTime = 60;  // [s]
 
 /// Costs that put the number of stops first and large discs second (see SetCoverProblem).
 std::vector<double> stop_costs(const std::vector<Intersection>& intersections) {
@@ -42,7 +45,10 @@ StopSet cover_from_intersections(const BaseGrid& grid, const std::vector<Interse
   problem.elements = trays;
   for (const Intersection& some : intersections) problem.sets.emplace_back(some.trays.begin(), some.trays.end());
   problem.costs = stop_costs(intersections);
-  const SetCoverResult cover = solve_set_cover(problem);
+  Monitor monitor;
+  if (const CancelToken* stop = detail::interruption_token()) monitor.stop = *stop;
+  const SetCoverResult cover = solve_set_cover(problem, kCoverTime, monitor);
+  detail::throw_if_interrupted();
   result.outcome = cover.outcome;
   for (int tray : cover.uncoverable) result.unreachable_trays.emplace_back(tray);
   // All penalties together stay below 1/2.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <queue>
 
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 
 // Lengths in here are in cells: cell (ix, iy) is the square [ix, ix + 1] x [iy, iy + 1].
@@ -118,15 +119,18 @@ class DiscSearch {
     const auto gap = [](int steps) { return squared(std::max(steps - 0.5, 0.0)); };
     std::vector<int> along(cells_.size());  // steps within the row
     for (int iy = 0; iy < ny_; ++iy) {
+      detail::throw_if_interrupted();
       int* row = along.data() + static_cast<std::ptrdiff_t>(iy) * nx_;
       for (int ix = 0, steps = 0; ix < nx_; ++ix) row[ix] = steps = free(ix, iy) ? steps + 1 : 0;
       for (int ix = nx_ - 1, steps = 0; ix >= 0; --ix)
         row[ix] = std::min(row[ix], steps = free(ix, iy) ? steps + 1 : 0);
     }
+    detail::InterruptionPoll poll(256);
     std::vector<double> distances(cells_.size(), 0);
     for (int iy = 0; iy < ny_; ++iy) {
       for (int ix = 0; ix < nx_; ++ix) {
         if (!free(ix, iy)) continue;
+        poll();
         double least = gap(along[static_cast<std::size_t>(iy) * nx_ + ix]);
         for (int steps = 1; gap(steps) < least; ++steps) {
           for (const int y : {iy - steps, iy + steps}) {
@@ -141,6 +145,7 @@ class DiscSearch {
   }
 
   Room make_room(const Cell& cell, double squared_room, const std::vector<Cell>& border) const {
+    detail::throw_if_interrupted();
     Room room;
     room.cell = cell;
     room.at_centre = std::sqrt(squared_room);
@@ -239,7 +244,9 @@ class DiscSearch {
       if (bound > best_ + tolerance_) queue.push({bound, order++, index, box});
     };
     for (int i = 0; i < static_cast<int>(rooms_.size()); ++i) push(i, whole(rooms_[i]));
+    detail::InterruptionPoll poll(64);
     while (!queue.empty()) {
+      poll();
       const Node node = queue.top();
       queue.pop();
       if (node.key <= best_ + tolerance_) break;
@@ -265,7 +272,9 @@ class DiscSearch {
       queue.push({-(box.closest(centroid_) - centroid_).norm(), order++, index, box});
     };
     for (int i = 0; i < static_cast<int>(rooms_.size()); ++i) push(i, whole(rooms_[i]));
+    detail::InterruptionPoll poll(64);
     while (!queue.empty()) {
+      poll();
       const Node node = queue.top();
       queue.pop();
       const Room& room = rooms_[node.room];

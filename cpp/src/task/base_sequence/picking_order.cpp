@@ -5,6 +5,7 @@
 #include <memory>
 #include <numeric>
 
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/random.hpp"
 #include "mmgrasp/optim/assignment.hpp"
@@ -34,6 +35,7 @@ std::vector<int> matched(const std::vector<Eigen::Vector2d>& tray, const std::ve
     const Eigen::MatrixXd costs = Eigen::MatrixXd::NullaryExpr(n, n, [&](Eigen::Index i, Eigen::Index j) {
       return both(i, j) ? (distance(i, j) - mean) * (distance(i, j) - mean) : 0.0;
     });
+    detail::throw_if_interrupted();
     const std::vector<int> match = cheapest_assignment(costs);
     double sum = 0, squares = 0, count = 0;
     for (Eigen::Index i = 0; i < n; ++i) {
@@ -119,6 +121,7 @@ class GroupOrder {
   }
 
   double radius(const std::vector<int>& picks) {
+    detail::throw_if_interrupted();
     std::vector<TrayId> ids;
     for (std::size_t t = 0; t < picks.size(); ++t) ids.emplace_back(offsets_[t] + picks[t]);
     const auto [it, is_new] = known_.try_emplace(ids, 0.0);

@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/task/base_sequence.hpp"
 #include "task/base_sequence/inscribed_circle.hpp"
@@ -11,7 +12,8 @@
 namespace mmgrasp {
 namespace {
 
-constexpr std::size_t kMaxTooSmall = 200;  // Most of Intersections::too_small that are kept.
+constexpr std::size_t kMaxTooSmall = 200;      // Most of Intersections::too_small that are kept.
+constexpr std::size_t kMostSets = 10'000'000;  // beyond, those remembered fill the memory
 
 using Words = std::vector<std::uint64_t>;
 
@@ -60,6 +62,7 @@ class LayerGrowth {
     std::vector<Candidate> grown;
     for (std::size_t a = 0; a < level.size(); ++a) {
       for (std::size_t b = a + 1; b < level.size(); ++b) {
+        detail::throw_if_interrupted();
         const std::vector<TrayId>& first = level[a].trays;
         const std::vector<TrayId>& second = level[b].trays;
         if (!std::equal(first.begin(), first.end() - 1, second.begin()))
@@ -130,6 +133,8 @@ class LayerGrowth {
 Intersections robust_intersections(const BaseGrid& grid, const std::vector<BaseRegion>& regions, double min_radius,
                                    std::size_t max_sets) {
   require(std::isfinite(min_radius) && min_radius >= 0, "min_radius", min_radius, "must be finite and not negative");
+  require(max_sets >= 1 && max_sets <= kMostSets, "max_sets", static_cast<double>(max_sets),
+          "must be in [1, 10000000]");
   for (const BaseRegion& region : regions) {
     if (!region.has_targets) continue;
     require(region.cells.size() == grid.size(), "region '" + region.tray + "' cells",

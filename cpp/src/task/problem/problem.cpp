@@ -10,6 +10,8 @@
 namespace mmgrasp {
 namespace {
 
+constexpr std::size_t kMostHeadings = 360;  // of a tray
+
 void require_positive(double value, const std::string& field) {
   require(std::isfinite(value) && value > 0, field, value, "must be positive and finite");
 }
@@ -43,6 +45,8 @@ void check_trays(const PartSupplyProblem& problem) {
     checked_pose(tray.T_world_tray.matrix(), field + " pose");
     require(tray.size.allFinite() && tray.size.minCoeff() > 0, field + " size", tray.size.minCoeff(),
             "must be positive");
+    require(tray.headings.size() <= kMostHeadings, field + " headings", static_cast<double>(tray.headings.size()),
+            "must be at most 360: each is a layer of the base grid");
     for (double heading : tray.headings)
       require(std::isfinite(heading), field + " headings", heading, "must be finite");
     for (const Part& part : tray.parts) {

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "mmgrasp/core/export.hpp"
+
 namespace mmgrasp::detail {
 
 /// What an array file of a database holds: numpy's name of the type and its shape, rows first.
@@ -54,22 +56,34 @@ class NpyWriter {
   std::size_t open_bytes_ = 0;
 };
 
-/// A whole file in memory: up to 256 MB as a copy, which nobody can cut short or change; a larger one read by the
-/// system when touched.
-class MappedFile {
+/// Files up to this size are read whole when they are opened.
+constexpr std::uint64_t kReadWhole = 256'000'000;
+
+/// The bytes of a file in memory of its own, read whole or, of a larger file, piece by piece when asked for: who cuts
+/// the file short or writes into it changes nothing that was read, and what was not is missed by read(). (Of a mapped
+/// file, touching what was cut off would end the process.)
+class MMGRASP_EXPORT FileCopy {
  public:
   /// Throws IoError when the file is missing or not `bytes` long.
-  MappedFile(const std::string& path, std::uint64_t bytes);
-  ~MappedFile();
-  MappedFile(const MappedFile&) = delete;
-  MappedFile& operator=(const MappedFile&) = delete;
+  FileCopy(const std::string& path, std::uint64_t bytes, std::uint64_t read_whole = kReadWhole);
+  ~FileCopy();
+  FileCopy(const FileCopy&) = delete;
+  FileCopy& operator=(const FileCopy&) = delete;
 
+  bool is_whole() const { return file_ < 0; }
+  /// Puts these bytes in their place, unless the file was read whole; not while others look at them. Throws IoError
+  /// when they are there no longer.
+  void read(std::uint64_t first, std::uint64_t end) const;
+  /// The same into a buffer, of a file that was not read whole.
+  void read_to(unsigned char* to, std::uint64_t first, std::uint64_t end) const;
   const unsigned char* data() const { return data_; }
   std::uint64_t size() const { return size_; }
 
  private:
-  const unsigned char* data_ = nullptr;
+  std::string path_;
+  unsigned char* data_ = nullptr;
   std::uint64_t size_ = 0;
+  int file_ = -1;  ///< Open as long as there is something to read.
 };
 
 }  // namespace mmgrasp::detail

@@ -359,7 +359,7 @@ def test_meshes_may_be_simpler_within_a_tolerance(
     (tmp_path / "column.stl").write_text(f"solid column\n{rows}endsolid column\n")
     mesh = "<collision><geometry><mesh filename='column.stl'/></geometry></collision>"
     (tmp_path / "column.urdf").write_text(f"<robot name='column'><link name='column'>{mesh}</link></robot>")
-    mount = {"urdf": str(tmp_path / "column.urdf"), "parent_link": "base_link", "prefix": "c_"}
+    mount: dict[str, Any] = {"urdf": str(tmp_path / "column.urdf"), "parent_link": "base_link", "prefix": "c_"}
     mount["pose"] = {"xyz": [-0.2, 0.2, 0.6]}
     raw = copy.deepcopy(small)
     kinds = {}

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <optional>
 
 #include "bindings.hpp"
@@ -22,18 +23,25 @@ const std::vector<OptionField<PushGraspProblem>>& push_fields() {
       option<P>("clearance", &P::clearance, "kept on either side while the fingers pass the object [m]"),
       option<P>("max_push", &P::max_push, "how far the object may slide before the palm [m]"),
       option<P>("along_error", &P::along_error, "the object may stand this much nearer or farther [m]"),
-      option<P>("lateral_error", &P::lateral_error, "and this much to either side [m]")};
+      option<P>("lateral_error", &P::lateral_error, "and this much to either side [m]"),
+      option<P>("along_deviation", &P::along_deviation,
+                "standard deviation of the object's position along the approach [m]"),
+      option<P>("lateral_deviation", &P::lateral_deviation, "the same along the closing direction [m]"),
+      option<P>("sigmas", &P::sigmas, "errors of this many deviations are covered")};
   return fields;
 }
-
-namespace {
 
 py::dict outcome_dict(const ClosingOutcome& o) {
   return py::dict("start"_a = o.start, "both_touch"_a = o.both_touch, "pushed"_a = o.pushed, "swept"_a = o.swept,
                   "side_clearance"_a = o.side_clearance, "holds"_a = o.holds,
                   "lateral_tolerance"_a = o.lateral_tolerance, "nearer_tolerance"_a = o.nearer_tolerance,
-                  "farther_tolerance"_a = o.farther_tolerance);
+                  "farther_tolerance"_a = o.farther_tolerance,
+                  "covered_sigmas"_a = std::isfinite(o.covered_sigmas) ? py::object(py::float_(o.covered_sigmas))
+                                                                       : py::object(py::none()),
+                  "probability"_a = o.probability);
 }
+
+namespace {
 
 std::string number_repr(double value) {
   return std::string(py::repr(py::float_(value)));
@@ -58,6 +66,11 @@ void bind_push_grasp(py::module_& m) {
       .def_readonly("lateral_tolerance", &O::lateral_tolerance, "It may stand this far to a side [m]; < 0: none.")
       .def_readonly("nearer_tolerance", &O::nearer_tolerance, "It may stand this much nearer [m].")
       .def_readonly("farther_tolerance", &O::farther_tolerance, "It may stand this much farther [m].")
+      .def_readonly("covered_sigmas", &O::covered_sigmas,
+                    "Errors of so many standard deviations along and aside together are survived; infinite where these "
+                    "are 0, negative where nothing is held.")
+      .def_readonly("probability", &O::probability,
+                    "That the object is held as planned, its errors independent and normally distributed.")
       .def("to_dict", &outcome_dict, "As a dict of plain numbers, strings and lists, e.g. for JSON.")
       .def("__repr__", [](const O& o) {
         return "ClosingOutcome(starts at " + number_repr(o.start) + " m, side clearance " +

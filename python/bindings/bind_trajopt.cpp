@@ -66,7 +66,8 @@ py::dict event_dict(const DriveByEvent& e) {
       "waypoint"_a = e.waypoint, "time"_a = e.time, "close_time"_a = e.close_time, "object"_a = e.object,
       "attach_time"_a = e.attach_time,
       "T_tip_object"_a = e.object.empty() ? py::none() : py::object(to_array(e.T_tip_object).attr("tolist")()),
-      "candidate"_a = e.candidate, "base_speed"_a = e.base_speed, "tool_speed"_a = e.tool_speed);
+      "candidate"_a = e.candidate, "base_speed"_a = e.base_speed, "tool_speed"_a = e.tool_speed,
+      "push"_a = e.push ? py::object(outcome_dict(*e.push)) : py::object(py::none()));
 }
 
 Poses candidates_argument(const ArrayLike& value) {
@@ -97,7 +98,7 @@ std::vector<bool> axes_argument(const std::vector<std::string>& names) {
   return free;
 }
 
-/// Keywords of push_grasp, and approach and free_length.
+/// Keywords of push_grasp, and approach, free_length, covariance and closing_direction.
 DriveByPush push_argument(const py::dict& given) {
   DriveByPush push;
   py::dict closing;
@@ -105,6 +106,12 @@ DriveByPush push_argument(const py::dict& given) {
     const std::string name = py::cast<std::string>(key);
     if (name == "approach") {
       push.approach = vector_argument(py::reinterpret_borrow<py::object>(value), "approach", 3);
+    } else if (name == "closing_direction") {
+      push.closing_direction = vector_argument(py::reinterpret_borrow<py::object>(value), "closing_direction", 3);
+    } else if (name == "covariance") {
+      const Eigen::MatrixXd rows = matrix_argument(value, name, 3);
+      if (rows.rows() != 3) throw InvalidInput("covariance: must be (3, 3)");
+      push.covariance = rows;
     } else if (name == "free_length") {
       convert(value, name, push.free_length);
     } else {
@@ -127,7 +134,9 @@ void bind_drive_by_task(py::module_& m) {
       "may "
       "touch it during the dwell.\nWhat rests on something counts as 1 mm higher once it is attached.\n\n"
       "push: a gripper that closes while the hand moves on (P1 4.3): dict of push_grasp's keywords, approach (3,), an "
-      "axis of\nthe tip's frame, and free_length [m], the straight way before the finger tips reach the object. "
+      "axis of\nthe tip's frame, free_length [m], the straight way before the finger tips reach the object, covariance "
+      "(3, 3) [m^2]\nof the object's position in the world, of which `sigmas` standard deviations are covered, and "
+      "closing_direction (3,)\nof the fingers in the tip's frame. "
       "T_world_tip is then\nthe planned grasp; tolerance, free_axes, max_tool_speed and dwell are left out.")
       .def(py::init([](const ArrayLike& T_world_tip, const OptionalArray& tolerance,
                        const std::vector<std::string>& free_axes, const OptionalNumber& max_tool_speed, double dwell,
@@ -166,7 +175,7 @@ void bind_drive_by_task(py::module_& m) {
       .def_property_readonly(
           "push",
           [](const DriveByTask& t) -> OptionalPush {
-            return t.push ? py::cast(push_grasp(t.push->closing)) : py::object(py::none());
+            return t.push ? py::cast(push_grasp(push_closing(t))) : py::object(py::none());
           },
           "What push_grasp says: closing time, window, tolerance to the object's position; None without one.")
       .def("__repr__", [](const DriveByTask& t) {

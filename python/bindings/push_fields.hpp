@@ -8,4 +8,7 @@ namespace mmgrasp::python {
 /// Keywords of push_grasp.
 const std::vector<OptionField<PushGraspProblem>>& push_fields();
 
+/// A ClosingOutcome as a dict of plain numbers.
+py::dict outcome_dict(const ClosingOutcome& outcome);
+
 }  // namespace mmgrasp::python

@@ -128,6 +128,22 @@ class StageRow(TypedDict):
     cost: float  # of its last one
 
 
+class ClosingOutcomeRow(TypedDict):
+    """What beginning to close at one moment leads to: `ClosingOutcome.to_dict()`."""
+
+    start: float  # engagement at which closing begins [m]
+    both_touch: float  # [m]
+    pushed: float  # [m]
+    swept: float  # [m]
+    side_clearance: float  # [m]
+    holds: bool
+    lateral_tolerance: float  # [m]
+    nearer_tolerance: float  # [m]
+    farther_tolerance: float  # [m]
+    covered_sigmas: float | None  # None: the object's position is certain
+    probability: float
+
+
 class DriveByEventRow(TypedDict):
     """When and how one task of a drive-by is done: `DriveByResult.events`."""
 
@@ -140,6 +156,7 @@ class DriveByEventRow(TypedDict):
     candidate: int
     base_speed: float  # [m/s]
     tool_speed: float  # [m/s]
+    push: ClosingOutcomeRow | None  # what a push-grasp survives
 
 
 class ViolationRow(TypedDict):

@@ -2739,6 +2739,11 @@ class ClosingOutcome:
         The same when both fingers touch, were the object not pushed [m].
         """
     @property
+    def covered_sigmas(self) -> float:
+        """
+        Errors of so many standard deviations along and aside together are survived; infinite where these are 0, negative where nothing is held.
+        """
+    @property
     def farther_tolerance(self) -> float:
         """
         It may stand this much farther [m].
@@ -2757,6 +2762,11 @@ class ClosingOutcome:
     def nearer_tolerance(self) -> float:
         """
         It may stand this much nearer [m].
+        """
+    @property
+    def probability(self) -> float:
+        """
+        That the object is held as planned, its errors independent and normally distributed.
         """
     @property
     def pushed(self) -> float:
@@ -3674,7 +3684,9 @@ class DriveByTask:
     What rests on something counts as 1 mm higher once it is attached.
     
     push: a gripper that closes while the hand moves on (P1 4.3): dict of push_grasp's keywords, approach (3,), an axis of
-    the tip's frame, and free_length [m], the straight way before the finger tips reach the object. T_world_tip is then
+    the tip's frame, free_length [m], the straight way before the finger tips reach the object, covariance (3, 3) [m^2]
+    of the object's position in the world, of which `sigmas` standard deviations are covered, and closing_direction (3,)
+    of the fingers in the tip's frame. T_world_tip is then
     the planned grasp; tolerance, free_axes, max_tool_speed and dwell are left out.
     """
     def __init__(self, T_world_tip: numpy.typing.ArrayLike, *, tolerance: numpy.typing.ArrayLike | None = None, free_axes: collections.abc.Sequence[str] = [], max_tool_speed: float | None = None, dwell: float = 0.0, object: str = '', push: dict[str, typing.Any] | None = None) -> None:
@@ -6617,7 +6629,7 @@ def cheapest_assignment(costs: numpy.typing.ArrayLike) -> list[int]:
     """
     A column of its own for each row of (n, n) so that the sum of costs is least.
     """
-def closing_outcome(start: float, *, opening: float = 0.1, closing_speed: float = 0.1, tool_speed: float = 0.3, finger_length: float = 0.12, object_width: float = 0.05, grip_depth: float = 0.02, planned_depth: float = 0.06, clearance: float = 0.0, max_push: float = 0.1, along_error: float = 0.0, lateral_error: float = 0.0) -> ClosingOutcome:
+def closing_outcome(start: float, *, opening: float = 0.1, closing_speed: float = 0.1, tool_speed: float = 0.3, finger_length: float = 0.12, object_width: float = 0.05, grip_depth: float = 0.02, planned_depth: float = 0.06, clearance: float = 0.0, max_push: float = 0.1, along_error: float = 0.0, lateral_error: float = 0.0, along_deviation: float = 0.0, lateral_deviation: float = 0.0, sigmas: float = 3.0) -> ClosingOutcome:
     """
     What beginning to close at an engagement [m] comes to.
     
@@ -6633,6 +6645,9 @@ def closing_outcome(start: float, *, opening: float = 0.1, closing_speed: float 
         max_push: float = 0.1  # how far the object may slide before the palm [m]
         along_error: float = 0.0  # the object may stand this much nearer or farther [m]
         lateral_error: float = 0.0  # and this much to either side [m]
+        along_deviation: float = 0.0  # standard deviation of the object's position along the approach [m]
+        lateral_deviation: float = 0.0  # the same along the closing direction [m]
+        sigmas: float = 3.0  # errors of this many deviations are covered
     """
 def compute_base_regions(problem: PartSupplyProblem, database: ReachDatabase, grid: BaseGrid, *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None) -> list[BaseRegion]:
     """
@@ -7185,7 +7200,7 @@ def preferred_grippers(requirements: collections.abc.Sequence[SegmentRequirement
         max_nodes: int = 20000  # of the search for fewest changes
         time_limit: float = 60.0  # wall-clock cap [s]
     """
-def push_grasp(*, hand: Hand | None = None, opening: float = 0.1, closing_speed: float = 0.1, tool_speed: float = 0.3, finger_length: float = 0.12, object_width: float = 0.05, grip_depth: float = 0.02, planned_depth: float = 0.06, clearance: float = 0.0, max_push: float = 0.1, along_error: float = 0.0, lateral_error: float = 0.0) -> PushGrasp:
+def push_grasp(*, hand: Hand | None = None, opening: float = 0.1, closing_speed: float = 0.1, tool_speed: float = 0.3, finger_length: float = 0.12, object_width: float = 0.05, grip_depth: float = 0.02, planned_depth: float = 0.06, clearance: float = 0.0, max_push: float = 0.1, along_error: float = 0.0, lateral_error: float = 0.0, along_deviation: float = 0.0, lateral_deviation: float = 0.0, sigmas: float = 3.0) -> PushGrasp:
     """
     When a hand that moves on may begin to close, and what error of the object's position it forgives (P1 4.3).
     Lengths are those of `hand` where no keyword gives them.
@@ -7202,6 +7217,9 @@ def push_grasp(*, hand: Hand | None = None, opening: float = 0.1, closing_speed:
         max_push: float = 0.1  # how far the object may slide before the palm [m]
         along_error: float = 0.0  # the object may stand this much nearer or farther [m]
         lateral_error: float = 0.0  # and this much to either side [m]
+        along_deviation: float = 0.0  # standard deviation of the object's position along the approach [m]
+        lateral_deviation: float = 0.0  # the same along the closing direction [m]
+        sigmas: float = 3.0  # errors of this many deviations are covered
     """
 def push_speed_limit(*, length: float, friction: float, restitution: float) -> float:
     """

@@ -230,6 +230,9 @@ TEST(PushGrasp, BadInputIsRefusedByName) {
     refused(&PushGraspProblem::max_push, bad, "max_push");
     refused(&PushGraspProblem::along_error, bad, "along_error");
     refused(&PushGraspProblem::lateral_error, bad, "lateral_error");
+    refused(&PushGraspProblem::along_deviation, bad, "along_deviation");
+    refused(&PushGraspProblem::lateral_deviation, bad, "lateral_deviation");
+    refused(&PushGraspProblem::sigmas, bad, "sigmas");
   }
   refused(&PushGraspProblem::opening, 0.05, "opening");
   refused(&PushGraspProblem::grip_depth, 0.2, "grip_depth");
@@ -237,6 +240,48 @@ TEST(PushGrasp, BadInputIsRefusedByName) {
   EXPECT_THROW(closing_outcome({}, nan), InvalidInput);
   EXPECT_THROW(push_speed_limit(0, 0.3, 0.5), InvalidInput);
   EXPECT_THROW(push_speed_limit(0.1, 0.3, 1.5), InvalidInput);
+}
+
+TEST(PushGrasp, CoversStandardDeviationsAndSaysHowProbableItIsToHold) {
+  Rng rng(21);
+  int covered = 0;
+  for (int trial = 0; trial < 12; ++trial) {
+    PushGraspProblem p = random_problem(rng);
+    p.along_error = p.lateral_error = 0;
+    p.along_deviation = rng.uniform(0.002, 0.02);
+    p.lateral_deviation = rng.uniform(0.001, 0.01);
+    const PushGrasp grasp = push_grasp(p);
+    if (grasp.feasible) {
+      ++covered;
+      EXPECT_GE(grasp.push.covered_sigmas, p.sigmas - 1e-9);
+    }
+    const ClosingOutcome& push = grasp.push;
+    // The box of so many deviations is held up to its corners, and a hair more is not.
+    const auto held = [&](double k) {
+      bool all = true;
+      for (const double x : {-1, 0, 1})
+        for (const double y : {0, 1})
+          all = all && walk(p, push.start, x * k * p.along_deviation, y * k * p.lateral_deviation).holds(p);
+      return all;
+    };
+    if (push.covered_sigmas > 0.05) {
+      EXPECT_TRUE(held(0.98 * push.covered_sigmas));
+      EXPECT_FALSE(held(1.02 * push.covered_sigmas));
+    }
+    const int draws = 400;
+    int count = 0;
+    for (int i = 0; i < draws; ++i)
+      count += walk(p, push.start, p.along_deviation * rng.normal(), p.lateral_deviation * rng.normal()).holds(p);
+    const double off = 4.5 * std::sqrt(push.probability * (1 - push.probability) / draws) + 0.01;
+    EXPECT_NEAR(push.probability, static_cast<double>(count) / draws, off);
+  }
+  EXPECT_GE(covered, 2);
+  PushGraspProblem sure;
+  EXPECT_EQ(push_grasp(sure).push.covered_sigmas, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(push_grasp(sure).push.probability, 1);
+  sure.lateral_deviation = 1;
+  EXPECT_FALSE(push_grasp(sure).feasible);
+  EXPECT_LT(push_grasp(sure).push.probability, 0.05);
 }
 
 }  // namespace

@@ -20,7 +20,12 @@ struct MMGRASP_EXPORT PushGraspProblem {
   double max_push = 0.1;        ///< How far the object may slide before the palm [m]; >= 0.
   double along_error = 0.0;     ///< The object may stand this much nearer or farther [m]; >= 0.
   double lateral_error = 0.0;   ///< And this much to either side along the closing direction [m]; >= 0.
-  void check() const;           ///< Throws InvalidInput naming field, value and rule.
+  /// What perception knows of the object's position: standard deviations along the approach and the closing direction
+  /// [m]; >= 0. Errors of `sigmas` of them are covered as along_error and lateral_error are, whichever is larger.
+  double along_deviation = 0.0;
+  double lateral_deviation = 0.0;
+  double sigmas = 3.0;  ///< >= 0.
+  void check() const;   ///< Throws InvalidInput naming field, value and rule.
 };
 
 /// The push-grasp of an object this wide [m] by a hand that is wide open: opening, finger length and clearance are the
@@ -39,6 +44,12 @@ struct MMGRASP_EXPORT ClosingOutcome {
   double lateral_tolerance = 0;  ///< An object standing where planned may lie this far off to a side [m]; < 0: none.
   double nearer_tolerance = 0;   ///< It may stand this much nearer, at the problem's lateral error [m]; < 0: none.
   double farther_tolerance = 0;  ///< And this much farther [m]; < 0: none.
+  /// Errors of so many of the problem's standard deviations along and aside together are survived; infinite where these
+  /// are 0, negative where nothing is held.
+  double covered_sigmas = 0;
+  /// How probable it is that the object is held as planned, its two errors normally distributed with these deviations
+  /// and independent.
+  double probability = 0;
 };
 
 /// The closing windows of a problem and both strategies of figure 4.7.

@@ -27,6 +27,12 @@ struct MMGRASP_EXPORT DriveByPush {
   Eigen::Vector3d approach =
       Eigen::Vector3d::UnitX();  ///< Direction in the tip's frame: one of its axes, of either sign.
   double free_length = 0.10;     ///< Straight way before the finger tips reach the object [m]; > 0.
+  /// Covariance of the object's position in the world's axes [m^2], symmetric, no eigenvalue below 0: along the
+  /// approach and the closing direction its deviations take the place of closing's where they are larger, those of the
+  /// candidate with the largest.
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d closing_direction =
+      Eigen::Vector3d::UnitY();  ///< The fingers close along it, in the tip's frame; unit length.
 };
 
 /// Something the tool does on the way: it passes one of several poses, perhaps slowly or for a while.
@@ -46,6 +52,10 @@ struct MMGRASP_EXPORT DriveByTask {
   std::optional<DriveByPush>
       push;  ///< A push-grasp at the task, which then has no dwell, max_tool_speed, tolerance or free axes.
 };
+
+/// The closing of a task's push-grasp with the deviations that its covariance has along approach and closing direction.
+/// Throws InvalidInput for a task without a push-grasp.
+MMGRASP_EXPORT PushGraspProblem push_closing(const DriveByTask& task);
 
 /// Where the motion ends.
 struct MMGRASP_EXPORT DriveByGoal {
@@ -82,6 +92,8 @@ struct MMGRASP_EXPORT DriveByEvent {
   int candidate = 0;                     ///< Index of the candidate that was taken.
   double base_speed = 0;                 ///< Speed of the base at the waypoint [m/s].
   double tool_speed = 0;                 ///< Speed of the tip at the waypoint [m/s].
+  /// What a push-grasp survives: tolerances of the object's position, covered standard deviations, probability.
+  std::optional<ClosingOutcome> push;
 };
 
 /// A motion of base and arm through all tasks, what happens at each, and what it breaks if anything.

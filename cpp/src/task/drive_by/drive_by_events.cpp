@@ -38,6 +38,7 @@ std::vector<DriveByEvent> events_of(const WholeBodyTrajectory& t, const World& w
     e.waypoint = waypoints[i];
     e.time = t.times()[at];
     if (steps[i].closes) e.close_time = e.time;
+    if (steps[i].push) e.push = push_grasp(push_closing(steps[i])).push;
     if (!steps[i].object.empty()) {
       e.object = steps[i].object;
       const Pose& T_world_object = world.objects().at(e.object).T_world_object;

@@ -1,5 +1,7 @@
 #include "task/drive_by/drive_by_steps.hpp"
 
+#include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -20,6 +22,16 @@ int axis_of(const Eigen::Vector3d& direction) {
   return -1;
 }
 
+void check_covariance(const Eigen::Matrix3d& covariance, const std::string& field) {
+  require(covariance.allFinite(), field, covariance.sum(), "must be finite");
+  const double scale = covariance.cwiseAbs().maxCoeff();
+  require((covariance - covariance.transpose()).cwiseAbs().maxCoeff() <= 1e-9 * scale, field,
+          (covariance - covariance.transpose()).cwiseAbs().maxCoeff(), "must be symmetric");
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance);
+  const double least = axes.eigenvalues()[0];
+  require(least >= -1e-9 * scale, field, least, "must have no eigenvalue below 0");
+}
+
 void check_push(const DriveByTask& task, const std::string& field) {
   const DriveByPush& push = *task.push;
   push.closing.check();
@@ -27,7 +39,12 @@ void check_push(const DriveByTask& task, const std::string& field) {
           "must be an axis of the tip's frame, of either sign");
   require(push.free_length > 0 && std::isfinite(push.free_length), field + ".free_length", push.free_length,
           "must be positive");
-  const PushGrasp grasp = push_grasp(push.closing);
+  require(std::abs(push.closing_direction.norm() - 1) < 1e-9, field + ".closing_direction",
+          push.closing_direction.norm(), "must have length 1");
+  require(std::abs(push.closing_direction.dot(push.approach)) < 1e-6, field + ".closing_direction along the approach",
+          push.closing_direction.dot(push.approach), "must be 0");
+  check_covariance(push.covariance, field + ".covariance");
+  const PushGrasp grasp = push_grasp(push_closing(task));
   require(grasp.feasible, field + ".tool_speed", push.closing.tool_speed,
           "must leave a moment to close for every error asked for (at most " + std::to_string(grasp.max_tool_speed) +
               " m/s)");
@@ -47,7 +64,7 @@ DriveByStep moved(const DriveByTask& task, std::size_t index, double along) {
 }
 
 void add_push(const DriveByTask& task, std::size_t index, std::vector<DriveByStep>& steps) {
-  const PushGraspProblem& closing = task.push->closing;
+  const PushGraspProblem closing = push_closing(task);
   const PushGrasp grasp = push_grasp(closing);
   const double begin = grasp.push.start - closing.planned_depth, end = grasp.push.both_touch - closing.planned_depth;
   const double first = std::min(-closing.planned_depth, begin) - task.push->free_length;
@@ -139,3 +156,22 @@ ToolConstraint constraint_before(const DriveByStep& step, int candidate, int way
 }
 
 }  // namespace mmgrasp::detail
+
+namespace mmgrasp {
+
+PushGraspProblem push_closing(const DriveByTask& task) {
+  if (!task.push) throw InvalidInput("push: the task has none");
+  const DriveByPush& push = *task.push;
+  PushGraspProblem closing = push.closing;
+  for (const Pose& T : task.candidates) {
+    const auto deviation = [&](const Eigen::Vector3d& direction) {
+      const Eigen::Vector3d d = T.linear() * direction;
+      return std::sqrt(std::max(0.0, d.dot(push.covariance * d)));
+    };
+    closing.along_deviation = std::max(closing.along_deviation, deviation(push.approach));
+    closing.lateral_deviation = std::max(closing.lateral_deviation, deviation(push.closing_direction));
+  }
+  return closing;
+}
+
+}  // namespace mmgrasp

@@ -47,6 +47,8 @@ def _print(plan: GripperPlan, console: Console) -> None:
         faults += [f"{step}: {met}" for step, met in plan.rehearsed.items() if met]
         for fault in faults:
             console.print(f"- {fault}", markup=False, soft_wrap=True)
+        for change in plan.help:
+            console.print(f"  would help: {change}", markup=False, soft_wrap=True)
         return
     what = f"{plural(len(result.grippers), 'gripper')} for {plural(len(result.parts), 'operation')}"
     console.print(f"{what}: {proof(plan)}", markup=False)

@@ -101,7 +101,10 @@ void bind_plan_result(py::module_& m) {
   py::class_<R>(m, "PlanGrippersResult", "The grippers of an assembly, and how they were come by.")
       .def_readonly("outcome", &R::outcome,
                     "`solved`: each operation has a gripper that was rehearsed, and the set is proven; `infeasible`: "
-                    "see missing and set; `not_found`: a rehearsal met something; `stopped`; else as the set's.")
+                    "an operation "
+                    "has no grasp to try, or its parts stand in each other (missing), or no drive takes it (set); "
+                    "`not_found`: no grasp that was tried goes through an operation, or a rehearsal met something; "
+                    "`stopped`; else as the set's.")
       .def_readonly("parts", &R::parts, "The parts that are moved, by name.")
       .def_readonly("fates", &R::fates, "Every segment of what is moved, in every operation.")
       .def_readonly("requirements", &R::requirements, "One per grasp kept; `part` is the operation's name.")

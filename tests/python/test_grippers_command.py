@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,8 +16,10 @@ import mmgrasp as mg
 from mmgrasp.cli import main
 from mmgrasp.grippers import load_assembly, plan_grippers
 from mmgrasp.grippers.assembly_file import shipped_assembly
+from mmgrasp.grippers.output import result_to_dict
 from mmgrasp.grippers.planning import GripperPlan, operation_of
 from mmgrasp.grippers.turned_parts import block, turned
+from mmgrasp.viz.gripper_report import gripper_report_html
 
 pytestmark = pytest.mark.slow
 
@@ -73,6 +76,18 @@ def test_rehearsal_meets_what_too_short_fingers_would(pulley: GripperPlan) -> No
     operation = operation_of(pulley.assembly, step)
     assert mg.gripper_design.rehearse_operation(just, grasp, operation) == ""
     assert "shaft" in mg.gripper_design.rehearse_operation(short, grasp, operation)
+
+
+def test_open_meshes_are_named(pulley: GripperPlan) -> None:
+    assert pulley.notes == []
+    sleeve = pulley.assembly.parts["sleeve"]
+    mesh = mg.Mesh.from_arrays(sleeve.mesh.vertices, np.asarray(sleeve.mesh.triangles)[1:])
+    parts = {**pulley.assembly.parts, "sleeve": replace(sleeve, mesh=mesh)}
+    plan = replace(pulley, assembly=replace(pulley.assembly, parts=parts))
+    (note,) = plan.notes
+    assert note.startswith("sleeve: the mesh is open")
+    assert note in gripper_report_html(plan, None)
+    assert result_to_dict(plan)["notes"] == [note]
 
 
 def test_command_writes_files_that_load(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -96,7 +96,7 @@ class Planning {
       judge(operations_[i]);
     }
     if (monitor_.stopped()) return std::move(result_);
-    result_.outcome = Outcome::infeasible;
+    result_.outcome = impossible_ ? Outcome::infeasible : Outcome::not_found;
     if (!result_.missing.empty()) return std::move(result_);
     result_.set =
         preferred_grippers(result_.requirements, values_of(ranks_), actuators_, set_options(options_), monitor_);
@@ -185,6 +185,7 @@ class Planning {
       result_.missing.push_back(operation.name + ": " + overlap.active + " stands " + millimetres(overlap.depth) +
                                 " deep in " + overlap.passive + " " + when + " (max_overlap is " +
                                 millimetres(options_.max_overlap) + ")");
+      impossible_ = true;
       return;
     }
     std::optional<OperationLoad> load;
@@ -229,6 +230,10 @@ class Planning {
 
   void tell_missing(const AssemblyOperation& operation, std::size_t first, const Remedy& remedy) {
     std::string why = operation.name + ": no segment can be held";
+    // Grasps are tried in steps: only where there are none to try, it is proven that there is none.
+    const auto tried = [](const SegmentFate& f) { return f.tried > 0; };
+    if (std::none_of(result_.fates.begin() + static_cast<std::ptrdiff_t>(first), result_.fates.end(), tried))
+      impossible_ = true;
     for (std::size_t i = first; i < result_.fates.size(); ++i) {
       const SegmentFate& f = result_.fates[i];
       why += "; " + f.part + ", segment " + std::to_string(f.segment) + ": " + f.refused;
@@ -266,6 +271,7 @@ class Planning {
   std::map<std::string, SurfacePieces> keep_off_;
   std::set<std::pair<std::string, int>> untouchable_;
   std::vector<GraspRank> ranks_;
+  bool impossible_ = false;  // Some operation, whatever grasps are tried.
   PlanGrippersResult result_;
 };
 

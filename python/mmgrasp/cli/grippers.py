@@ -40,6 +40,8 @@ def _print(plan: GripperPlan, console: Console) -> None:
     from ..viz.gripper_report import proof
     from ..viz.report import plural
 
+    for note in plan.notes:
+        console.print(f"note: {note}", markup=False, soft_wrap=True)
     result = plan.result
     if not plan.solved or result is None:
         console.print(f"no grippers: {plan.outcome.name.replace('_', ' ')}", style="bold red", markup=False)

@@ -35,6 +35,7 @@ def result_to_dict(plan: GripperPlan) -> dict[str, Any]:
         "outcome": plan.outcome.name,
         "missing": plan.missing,
         "help": plan.help,
+        "notes": plan.notes,
         "grippers": [],
         "operations": [],
         "segments": [

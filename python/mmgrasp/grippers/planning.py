@@ -44,14 +44,25 @@ class GripperPlan:
     """Operations that cannot be done, each with the reasons."""
     result: MinimalGrippersResult | None
     outcome: Outcome = Outcome.infeasible
-    """solved: every operation has a gripper that was rehearsed, and the set is proven; infeasible: see missing, or what the set leaves uncovered;
-    not_found: a rehearsal met something; else the least set's."""
+    """As `PlanGrippersResult.outcome`."""
     help: list[str] = field(default_factory=list)
     """Single changes each of which gives an operation its grasp."""
     rehearsed: dict[str, str] = field(default_factory=dict)
     """For each operation what the chosen gripper met when the operation was gone through again by the collision checker; '' nothing."""
     holdings: list[HeldLoad | None] = field(default_factory=list)
     """One per requirement; None where the assembly says nothing of weight and insertion."""
+
+    @property
+    def notes(self) -> list[str]:
+        """What is wrong with the parts' meshes, and what was mended."""
+        out = []
+        for name, part in self.assembly.parts.items():
+            if part.mesh.closed:
+                continue
+            turned = name in self.segmentations and self.segmentations[name].turned
+            mended = "; it was inside out, its faces were turned" if turned else ""
+            out.append(f"{name}: the mesh is open: it has no inside that others could be seen to stand in{mended}")
+        return out
 
     @property
     def solved(self) -> bool:

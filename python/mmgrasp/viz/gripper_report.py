@@ -20,6 +20,7 @@ def gripper_report_html(plan: GripperPlan, pictures: Path | None) -> str:
     sections = [
         _headline(plan),
         _obstacles(plan),
+        _notes(plan),
         _grippers(plan),
         _operations(plan, pictures),
         _segments(plan, pictures),
@@ -75,6 +76,12 @@ def _obstacles(plan: GripperPlan) -> str:
     if not faults:
         return ""
     return "<h2>What stands in the way</h2>" + "".join(f'<div class="bad">{escape(f)}</div>' for f in faults)
+
+
+def _notes(plan: GripperPlan) -> str:
+    if not plan.notes:
+        return ""
+    return "<h2>Meshes to look at</h2><ul>" + "".join(f"<li>{escape(note)}</li>" for note in plan.notes) + "</ul>"
 
 
 def _grippers(plan: GripperPlan) -> str:

@@ -69,7 +69,7 @@ TEST(PlanGrippers, WhatWouldHelpHelps) {
   PlanGrippersOptions options;
   options.longest_finger = 0.02;
   PlanGrippersResult found = plan_grippers(ring_on_peg(), kChuck, {}, options);
-  EXPECT_EQ(found.outcome, Outcome::infeasible);
+  EXPECT_EQ(found.outcome, Outcome::not_found);  // other directions might do
   ASSERT_EQ(found.missing.size(), 1u);
   ASSERT_EQ(found.help, std::vector<std::string>{"ring: fingers of 24 mm would do"});  // 23 mm and the margin
   options.longest_finger = 0.024;
@@ -102,7 +102,7 @@ TEST(PlanGrippers, FingersKeepOffSegmentsAndBoxes) {
     EXPECT_NEAR(g.contact_length, 0.003, 1e-9);
   }
   KeepOffBox top{at(0, 0, 0.0115), {0.05, 0.05, 0.001}};  // whoever comes from above passes it
-  EXPECT_EQ(plan_grippers(ring_on_peg(), kChuck, {{"ring", {}, {top}}}).outcome, Outcome::infeasible);
+  EXPECT_EQ(plan_grippers(ring_on_peg(), kChuck, {{"ring", {}, {top}}}).outcome, Outcome::not_found);
   EXPECT_THROW(plan_grippers(ring_on_peg(), kChuck, {{"rings"}}), InvalidInput);
   EXPECT_THROW(plan_grippers(ring_on_peg(), kChuck, {{"ring", {99}}}), InvalidInput);
   EXPECT_THROW(plan_grippers(ring_on_peg(), kChuck, {{"ring", {}, {{at(1, 0, 0), {0.01, 0.01, 0.01}}}}}), InvalidInput);
@@ -140,7 +140,7 @@ TEST(PlanGrippers, WeightAndInsertionAreHeldOrRefused) {
   EXPECT_NEAR(held.insertion_moment, 0, 1e-4);
   options.holding->grip.force = 5;
   const PlanGrippersResult weak = plan_grippers(order, kChuck, {}, options);
-  EXPECT_EQ(weak.outcome, Outcome::infeasible);
+  EXPECT_EQ(weak.outcome, Outcome::not_found);
   EXPECT_NE(weak.missing.at(0).find("pads slip"), std::string::npos);
   EXPECT_TRUE(weak.help.empty());
 }

@@ -61,9 +61,9 @@ struct MMGRASP_EXPORT SegmentFate {
 
 /// The grippers of an assembly, and how they were come by.
 struct MMGRASP_EXPORT PlanGrippersResult {
-  /// `solved`: each operation has a gripper that was rehearsed, and the set is proven; `infeasible`: an operation
-  /// cannot be done, see `missing`, or no gripper holds it, see `set`; `not_found`: a rehearsal met something;
-  /// `stopped`; else as `set`.
+  /// `solved`: each operation has a gripper that was rehearsed, and the set is proven; `infeasible`: an operation has
+  /// no grasp to try, or its parts stand in each other (see `missing`), or no drive takes it (see `set`); `not_found`:
+  /// no grasp that was tried goes through an operation, or a rehearsal met something; `stopped`; else as `set`.
   Outcome outcome = Outcome::stopped;
   std::map<std::string, SegmentedPart> parts;    ///< The parts that are moved, by name.
   std::vector<SegmentFate> fates;                ///< Every segment of what is moved, in every operation.

@@ -6750,7 +6750,7 @@ class PlanGrippersResult:
     @property
     def outcome(self) -> Outcome:
         """
-        `solved`: each operation has a gripper that was rehearsed, and the set is proven; `infeasible`: see missing and set; `not_found`: a rehearsal met something; `stopped`; else as the set's.
+        `solved`: each operation has a gripper that was rehearsed, and the set is proven; `infeasible`: an operation has no grasp to try, or its parts stand in each other (missing), or no drive takes it (set); `not_found`: no grasp that was tried goes through an operation, or a rehearsal met something; `stopped`; else as the set's.
         """
     @property
     def parts(self) -> dict[str, SegmentedPart]:

@@ -33,20 +33,29 @@ void bind_operation(py::module_& m) {
       "go of it and moves back along its approach.\n\n"
       "    AssemblyOperation([PlacedMesh(\"sleeve\", sleeve)], [PlacedMesh(\"shaft\", shaft)],\n"
       "                      [mg.pose([0, 0, 0.1]), mg.pose([0, 0, 0])])")
-      .def(py::init([](const Given<std::vector<PlacedMesh>>& active, const Given<std::vector<PlacedMesh>>& passive,
-                       const ArrayLike& motion) {
-             O operation{taken(active, "active", "PlacedMesh"), taken(passive, "passive", "PlacedMesh"),
-                         poses_argument(motion, "motion")};
-             operation.check();
-             return operation;
-           }),
-           "active"_a, "passive"_a, "motion"_a,
-           "Parts held, parts that stay (fixture and table too), T_passive_active from before to the end, (m, 4, 4).")
+      .def(
+          py::init([](const Given<std::vector<PlacedMesh>>& active, const Given<std::vector<PlacedMesh>>& passive,
+                      const ArrayLike& motion, const Given<std::string>& name, const Given<double>& force,
+                      const OptionalArray& hole) {
+            O operation{taken(active, "active", "PlacedMesh"), taken(passive, "passive", "PlacedMesh"),
+                        poses_argument(motion, "motion"), taken(name, "name"), taken(force, "insertion_force")};
+            if (!hole.is_none()) operation.hole = vector3_argument(hole, "hole");
+            operation.check();
+            return operation;
+          }),
+          "active"_a, "passive"_a, "motion"_a, py::kw_only(), "name"_a = "", "insertion_force"_a = 0.0,
+          "hole"_a = py::none(),
+          "Parts held, parts that stay (fixture and table too), T_passive_active from before to the end, (m, 4, 4); "
+          "name for messages, with what force the hole resists against the last straight line [N], a point on its axis "
+          "in the frame of what is held (3,) [m] (None: the centre of mass).")
       .def_readonly("active", &O::active, "Held.")
       .def_readonly("passive", &O::passive, "Stays where it is.")
       .def_property_readonly(
           "motion", [](const O& o) { return to_array(o.motion); },
           "T_passive_active, (m, 4, 4); the last one where the gripper opens.")
+      .def_readonly("name", &O::name, "For messages and results.")
+      .def_readonly("insertion_force", &O::insertion_force, "With which the hole resists [N].")
+      .def_readonly("hole", &O::hole, "A point on the hole's axis (3,) [m]; None: the centre of mass.")
       .def("__repr__", [](const O& o) {
         return "AssemblyOperation(" + o.active.front().name + ", " + std::to_string(o.passive.size()) +
                " passive parts, " + std::to_string(o.motion.size()) + " poses)";
@@ -123,6 +132,7 @@ const std::vector<OptionField<AssemblyGraspOptions>>& assembly_grasp_fields() {
       option<O>("finger_width", &O::finger_width, "across approach and closing direction [m]"),
       option<O>("finger_thickness", &O::finger_thickness, "along the closing direction [m]"),
       option<O>("clearance", &O::clearance, "by which each finger opens to approach and to let go [m]"),
+      option<O>("tip_clearance", &O::tip_clearance, "tips end this short of the far end of what they hold [m]"),
       option<O>("palm_margin", &O::palm_margin, "the palm reaches beyond the open fingers by this [m]")};
   return fields;
 }

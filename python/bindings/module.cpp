@@ -26,6 +26,8 @@ void bind_object_path(py::module_& m);
 void bind_assembly(py::module_& m);
 void bind_gripper_design(py::module_& m);
 void bind_grasp_holding(py::module_& m);
+void bind_operation_checks(py::module_& m);
+void bind_plan_grippers(py::module_& m);
 void bind_push_grasp(py::module_& m);
 void bind_manipulation(py::module_& m);
 
@@ -105,6 +107,8 @@ PYBIND11_MODULE(_core, m) {
   bind_assembly(m);
   bind_gripper_design(m);
   bind_grasp_holding(m);
+  bind_operation_checks(m);
+  bind_plan_grippers(m);
   bind_verify(m);
   refuse_bare_objects(m);
   end_calls_at_exit();

@@ -143,9 +143,10 @@ def test_the_belt_drive_gets_two_grippers(data: Path) -> None:
     assert plan.solved and plan.result is not None
     assert len(plan.result.grippers) == plan.result.lower_bound == 2
     asked = {r.part: r for r in (plan.requirements[i] for i in plan.result.requirement_of_part)}
-    # What stands out above what is held, by hand: the shaft 21 mm over the hub held 1.5 mm deep, the pin 20.5 over the spacer 2 mm deep.
-    assert asked["output pulley"].min_finger_length == pytest.approx(0.0225, abs=1e-4)
-    assert asked["spacer"].min_finger_length == pytest.approx(0.0225, abs=1e-4)
+    # Worked out by hand: the hub, 10 mm high, is held 9.5 mm deep and the shaft stands 21 mm out of it; of the spacer the pin's top at 36 mm stands
+    # 29 mm over tips at 7 mm, half a millimetre above its lower edge's chamfer.
+    assert asked["output pulley"].min_finger_length == pytest.approx(0.0305, abs=1e-4)
+    assert asked["spacer"].min_finger_length == pytest.approx(0.029, abs=1e-4)
     for part, opening in (
         ("shaft", 10),
         ("output pulley", 25),

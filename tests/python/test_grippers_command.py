@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,9 +16,10 @@ import mmgrasp as mg
 from mmgrasp.cli import main
 from mmgrasp.grippers import load_assembly, plan_grippers
 from mmgrasp.grippers.assembly_file import shipped_assembly
+from mmgrasp.grippers.output import result_to_dict
 from mmgrasp.grippers.planning import GripperPlan, operation_of
-from mmgrasp.grippers.rehearsal import rehearse
 from mmgrasp.grippers.turned_parts import block, turned
+from mmgrasp.viz.gripper_report import gripper_report_html
 
 pytestmark = pytest.mark.slow
 
@@ -71,8 +73,21 @@ def test_rehearsal_meets_what_too_short_fingers_would(pulley: GripperPlan) -> No
     asked = pulley.requirements[pulley.result.requirement_of_part[i]].min_finger_length
     short = mg.gripper_design.Gripper(**{**numbers, "finger_length": asked - 0.001})
     just = mg.gripper_design.Gripper(**{**numbers, "finger_length": asked + 1e-5})
-    assert rehearse(pulley.assembly, just, grasp, operation_of(pulley.assembly, step)) == ""
-    assert "shaft" in rehearse(pulley.assembly, short, grasp, operation_of(pulley.assembly, step))
+    operation = operation_of(pulley.assembly, step)
+    assert mg.gripper_design.rehearse_operation(just, grasp, operation) == ""
+    assert "shaft" in mg.gripper_design.rehearse_operation(short, grasp, operation)
+
+
+def test_open_meshes_are_named(pulley: GripperPlan) -> None:
+    assert pulley.notes == []
+    sleeve = pulley.assembly.parts["sleeve"]
+    mesh = mg.Mesh.from_arrays(sleeve.mesh.vertices, np.asarray(sleeve.mesh.triangles)[1:])
+    parts = {**pulley.assembly.parts, "sleeve": replace(sleeve, mesh=mesh)}
+    plan = replace(pulley, assembly=replace(pulley.assembly, parts=parts))
+    (note,) = plan.notes
+    assert note.startswith("sleeve: the mesh is open")
+    assert note in gripper_report_html(plan, None)
+    assert result_to_dict(plan)["notes"] == [note]
 
 
 def test_command_writes_files_that_load(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -99,6 +114,41 @@ def test_what_cannot_be_held_says_why(tmp_path: Path, capsys: pytest.CaptureFixt
     printed = capsys.readouterr().out
     assert "no actuator has 3 fingers" in printed
     assert "sleeve: no segment can be held" in printed
+    assert "would help: sleeve: a drive with 3 fingers" in printed
+
+
+def test_parts_that_stand_in_each_other_are_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """From below, through the base; and an end 3 mm too low, which a larger max_overlap lets pass."""
+    below = changed(tmp_path, order=[{"part": "shaft", "onto": ["base"], "from": {"xyz": [0, 0, -80]}}])
+    assert main(["grippers", str(below), "-o", str(tmp_path / "out"), "--no-pictures"]) == 3
+    assert re.search(r"shaft stands [\d.]+ mm deep in base [\d.]+ mm before its end", capsys.readouterr().out)
+    parts = yaml.safe_load(shipped_assembly("pulley").read_text())["parts"]
+    next(p for p in parts if p["name"] == "base")["pose"] = {"xyz": [0, 0, -2]}
+    order = [{"part": "shaft", "onto": ["base"], "from": {"xyz": [0, 0, 80]}}]
+    low = changed(tmp_path, parts=parts, order=order)
+    assert main(["grippers", str(low), "-o", str(tmp_path / "out"), "--no-pictures"]) == 3
+    assert "shaft stands 3 mm deep in base at its end (max_overlap is 0.5 mm)" in capsys.readouterr().out
+    allowed = changed(tmp_path, parts=parts, order=order, options={"max_overlap": 3.5})
+    assert not plan_grippers(load_assembly(allowed)).missing
+
+
+def test_boxes_keep_fingers_off_a_part_of_a_segment(tmp_path: Path) -> None:
+    """The shaft's collar, 6 mm high, is held up to 5.5 mm deep; where a strip around its middle is to be left alone, up to that strip."""
+
+    def depths(plan: GripperPlan) -> list[float]:
+        return [1e3 * g.contact_length for g in plan.grasps if abs(g.opening - 0.04) < 1e-4]
+
+    parts = yaml.safe_load(shipped_assembly("pulley").read_text())["parts"]
+    order = [{"part": "shaft", "from": {"xyz": [0, 0, 80]}}]
+    assert max(depths(plan_grippers(load_assembly(changed(tmp_path, order=order))))) == pytest.approx(5.5, abs=0.1)
+    shaft = next(p for p in parts if p["name"] == "shaft")
+    shaft["keep_off"] = [{"box": [50, 50, 1], "pose": {"xyz": [0, 0, 3]}}]
+    kept = plan_grippers(load_assembly(changed(tmp_path, order=order, parts=parts)))
+    assert kept.solved
+    assert 1.5 <= min(depths(kept)) + 1e-6 and max(depths(kept)) < 2.5
+    shaft["keep_off"] = [99]
+    with pytest.raises(mg.InvalidInput, match=r"keep_off of part 'shaft' = 99: must be the number of one of its \d+ "):
+        plan_grippers(load_assembly(changed(tmp_path, order=order, parts=parts)))
 
 
 @pytest.mark.parametrize(
@@ -120,6 +170,9 @@ def test_what_cannot_be_held_says_why(tmp_path: Path, capsys: pytest.CaptureFixt
         ({"parts": [{"name": "a", "turned": [["1", 0], [1, 0], [1, 1]]}]}, "must be numbers"),
         ({"parts": [{"name": "a", "mesh": "a.stl", "box": [1, 1, 1]}]}, "one of mesh, turned and box"),
         ({"parts": [{"name": "a", "mesh": "no_such.stl"}]}, "no_such.stl"),
+        ({"parts": [{"name": "a", "box": [1, 1, 1], "keep_off": [{"box": [1, 0, 1]}]}]}, "must be > 0"),
+        ({"parts": [{"name": "a", "box": [1, 1, 1], "keep_off": [{"ball": 1}]}]}, "ball"),
+        ({"options": {"max_overlap": -1}}, "max_overlap = -1"),
         ({"version": 9}, "version"),
         ({"format": "mmgrasp-scenario"}, "mmgrasp-assembly"),
     ],

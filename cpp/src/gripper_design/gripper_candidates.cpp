@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
+#include <string>
 #include <utility>
 
 #include "mmgrasp/core/detail/numbers.hpp"
+#include "mmgrasp/core/error.hpp"
 
 namespace mmgrasp::detail {
 namespace {
@@ -122,6 +125,20 @@ std::vector<GripperCandidate> undominated(std::vector<GripperCandidate> all) {
 }
 
 }  // namespace
+
+void check_actuators(const std::vector<GripperActuator>& actuators) {
+  if (actuators.empty()) throw InvalidInput("actuators is empty: name at least one drive");
+  std::set<std::string> names;
+  for (const GripperActuator& a : actuators) {
+    const std::string of = " of actuator '" + a.name + "'";
+    if (a.name.empty()) throw InvalidInput("name of an actuator is empty: every actuator must have one");
+    if (!names.insert(a.name).second) throw InvalidInput("actuator '" + a.name + "' is there twice: names must differ");
+    require(a.fingers == 2 || a.fingers == 3, "fingers" + of, a.fingers, "must be 2 or 3");
+    require(std::isfinite(a.stroke) && a.stroke > 0, "stroke" + of, a.stroke, "must be a positive length [m]");
+    require(a.max_opening >= a.stroke, "max_opening" + of, a.max_opening, "must be at least the stroke [m]");
+    require(std::isfinite(a.cost) && a.cost > 0, "cost" + of, a.cost, "must be positive");
+  }
+}
 
 bool RequiredRange::can_be_met(const GripperActuator& actuator) const {
   return highest <= actuator.max_opening + kEqual && highest - lowest <= actuator.stroke + kEqual &&

@@ -8,6 +8,9 @@
 
 namespace mmgrasp::detail {
 
+/// Throws InvalidInput: no actuator, names missing or there twice, numbers out of range.
+void check_actuators(const std::vector<GripperActuator>& actuators);
+
 /// What a requirement leaves of opening and finger length once the margins are taken off.
 struct RequiredRange {
   double lowest = 0, highest = 0;    ///< Both openings lie within the gripper's [m].

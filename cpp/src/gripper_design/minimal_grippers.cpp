@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <set>
 #include <sstream>
 #include <stdexcept>
 
@@ -21,20 +20,6 @@ using namespace detail;
 
 constexpr int kMaxRequirements = 100000;
 constexpr int kMaxGrid = 10000;
-
-void check_actuators(const std::vector<GripperActuator>& actuators) {
-  if (actuators.empty()) throw InvalidInput("actuators is empty: name at least one drive");
-  std::set<std::string> names;
-  for (const GripperActuator& a : actuators) {
-    const std::string of = " of actuator '" + a.name + "'";
-    if (a.name.empty()) throw InvalidInput("name of an actuator is empty: every actuator must have one");
-    if (!names.insert(a.name).second) throw InvalidInput("actuator '" + a.name + "' is there twice: names must differ");
-    require(a.fingers == 2 || a.fingers == 3, "fingers" + of, a.fingers, "must be 2 or 3");
-    require(std::isfinite(a.stroke) && a.stroke > 0, "stroke" + of, a.stroke, "must be a positive length [m]");
-    require(a.max_opening >= a.stroke, "max_opening" + of, a.max_opening, "must be at least the stroke [m]");
-    require(std::isfinite(a.cost) && a.cost > 0, "cost" + of, a.cost, "must be positive");
-  }
-}
 
 std::string millimetres(double length) {
   std::ostringstream out;

@@ -10,7 +10,7 @@ import numpy.typing
 import os
 import typing
 from . import verify
-__all__: list[str] = ['AssemblyGrasp', 'AssemblyOperation', 'BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'BeamExtreme', 'BeamFrame', 'BeamMaterial', 'BeamMember', 'BeamSection', 'BeamState', 'BeamSupport', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactArea', 'ContactPairProvenance', 'ContactPatch', 'CuboidFit', 'Cylinder', 'DepthCamera', 'DepthImage', 'DepthNoise', 'DerivativeFreeResult', 'DistanceField', 'DistanceResult', 'DrawnSuccess', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'Facet', 'FeasibleGrasp', 'FingerGrip', 'FingerLengthRange', 'FittedCuboid', 'FittedPrimitive', 'FrameRegistration', 'Grasp', 'GraspHolding', 'GraspOptimum', 'GraspRating', 'GraspReport', 'GraspSuccess', 'GraspSynthesis', 'GraspWidth', 'Graspability', 'GridDistanceField', 'Gripper', 'GripperActuator', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'IntegrationReport', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LineGrasp', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'ManipulationStats', 'Mesh', 'MeshDistanceField', 'MeshSegment', 'MeshSegmentation', 'MinimalGrippersResult', 'MotionResult', 'MotionStats', 'NextView', 'NlpResult', 'NodeLoad', 'NonlinearProblem', 'ObjectPathEvaluator', 'ObjectPathProblem', 'ObjectPathResult', 'ObjectRegions', 'ObjectSegmentation', 'Obstruction', 'OccupancyMap', 'OccupancyReport', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'PairwiseWeights', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedMesh', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'ProbabilisticSdf', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotMotion', 'RobotSource', 'ScrewThread', 'SdfHits', 'SearchTree', 'SegmentRequirement', 'SegmentedObject', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'SupportedFrame', 'SupportingPlane', 'ToolRegion', 'TourResult', 'Tray', 'ViewCandidate', 'Voxels', 'WholeBodyProgram', 'WholeBodyTrajectory', 'World', 'beam_frame', 'cache_folder', 'camera_view_objective', 'centric_grasps', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'copper', 'cover_from_intersections', 'default_grasp_search', 'derivative_free_solver_names', 'drive_arc', 'drive_by_program', 'eigengrasp_hand', 'evaluate_graspability', 'find_package', 'finger_length_range', 'fit_cuboids', 'fit_primitives', 'flat_contact', 'follow_object_path', 'grasp_holding', 'grasp_search_names', 'graspability_map', 'hand_masks', 'inscribed_circle', 'jaw_grasps', 'joint_limit_objective', 'joint_velocity', 'line_contact', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimal_grippers', 'minimize_derivative_free', 'next_view', 'nlp_solver_names', 'optimised_order', 'optimize_grasp', 'paired_order', 'pairwise_weights', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stop_picks', 'plan_stops_exact', 'plan_straight_line', 'planar_facets', 'planner_names', 'platform_velocity', 'population_search_names', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'preferred_grippers', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'rectangular_section', 'register_frame', 'render_depth', 'resting_poses', 'robust_intersections', 'round_section', 'route_lengths', 'run_policy', 'sample_grasps', 'segment_depth_image', 'segment_mesh', 'segment_objects', 'self_distance_objective', 'shape_diameters', 'share_headings', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'soft_finger_torque', 'solve_nonlinear', 'solve_set_cover', 'synthesize_grasps', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs', 'write_plan']
+__all__: list[str] = ['AssemblyGrasp', 'AssemblyOperation', 'BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'BeamExtreme', 'BeamFrame', 'BeamMaterial', 'BeamMember', 'BeamSection', 'BeamState', 'BeamSupport', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactArea', 'ContactPairProvenance', 'ContactPatch', 'CuboidFit', 'Cylinder', 'DepthCamera', 'DepthImage', 'DepthNoise', 'DerivativeFreeResult', 'DistanceField', 'DistanceResult', 'DrawnSuccess', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'Facet', 'FeasibleGrasp', 'FingerGrip', 'FingerLengthRange', 'FittedCuboid', 'FittedPrimitive', 'FrameRegistration', 'Grasp', 'GraspHolding', 'GraspOptimum', 'GraspRating', 'GraspReport', 'GraspSuccess', 'GraspSynthesis', 'GraspWidth', 'Graspability', 'GridDistanceField', 'Gripper', 'GripperActuator', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'HeldLoad', 'HoldingRequirement', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'IntegrationReport', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'KeepOff', 'LineGrasp', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'ManipulationStats', 'Mesh', 'MeshDistanceField', 'MeshSegment', 'MeshSegmentation', 'MinimalGrippersResult', 'MotionResult', 'MotionStats', 'NextView', 'NlpResult', 'NodeLoad', 'NonlinearProblem', 'ObjectPathEvaluator', 'ObjectPathProblem', 'ObjectPathResult', 'ObjectRegions', 'ObjectSegmentation', 'Obstruction', 'OccupancyMap', 'OccupancyReport', 'OperationLoad', 'OperationOverlap', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'PairwiseWeights', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedMesh', 'PlacedPart', 'PlanGrippersResult', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'ProbabilisticSdf', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotMotion', 'RobotSource', 'ScrewThread', 'SdfHits', 'SearchTree', 'SegmentFate', 'SegmentRequirement', 'SegmentedObject', 'SegmentedPart', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'SupportedFrame', 'SupportingPlane', 'ToolRegion', 'TourResult', 'Tray', 'ViewCandidate', 'Voxels', 'WholeBodyProgram', 'WholeBodyTrajectory', 'World', 'beam_frame', 'cache_folder', 'camera_view_objective', 'centric_grasps', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'copper', 'cover_from_intersections', 'default_grasp_search', 'derivative_free_solver_names', 'drive_arc', 'drive_by_program', 'eigengrasp_hand', 'evaluate_graspability', 'find_package', 'finger_length_range', 'fit_cuboids', 'fit_primitives', 'flat_contact', 'follow_object_path', 'free_gripper', 'grasp_holding', 'grasp_search_names', 'graspability_map', 'hand_masks', 'held_load', 'inscribed_circle', 'jaw_grasps', 'joint_limit_objective', 'joint_velocity', 'line_contact', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimal_grippers', 'minimize_derivative_free', 'next_view', 'nlp_solver_names', 'operation_load', 'operation_overlap', 'optimised_order', 'optimize_grasp', 'paired_order', 'pairwise_weights', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_grippers', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stop_picks', 'plan_stops_exact', 'plan_straight_line', 'planar_facets', 'planner_names', 'platform_velocity', 'population_search_names', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'preferred_grippers', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'rectangular_section', 'register_frame', 'rehearse_operation', 'render_depth', 'resting_poses', 'robust_intersections', 'round_section', 'route_lengths', 'run_policy', 'sample_grasps', 'segment_depth_image', 'segment_grasps', 'segment_mesh', 'segment_objects', 'self_distance_objective', 'shape_diameters', 'share_headings', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'soft_finger_torque', 'solve_nonlinear', 'solve_set_cover', 'synthesize_grasps', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
 class Error(Exception):
     """
     Base of all errors of mmgrasp.
@@ -2739,11 +2739,6 @@ class ClosingOutcome:
         The same when both fingers touch, were the object not pushed [m].
         """
     @property
-    def covered_sigmas(self) -> float:
-        """
-        Errors of so many standard deviations along and aside together are survived; infinite where these are 0, negative where nothing is held.
-        """
-    @property
     def farther_tolerance(self) -> float:
         """
         It may stand this much farther [m].
@@ -2762,11 +2757,6 @@ class ClosingOutcome:
     def nearer_tolerance(self) -> float:
         """
         It may stand this much nearer [m].
-        """
-    @property
-    def probability(self) -> float:
-        """
-        That the object is held as planned, its errors independent and normally distributed.
         """
     @property
     def pushed(self) -> float:
@@ -3684,9 +3674,7 @@ class DriveByTask:
     What rests on something counts as 1 mm higher once it is attached.
     
     push: a gripper that closes while the hand moves on (P1 4.3): dict of push_grasp's keywords, approach (3,), an axis of
-    the tip's frame, free_length [m], the straight way before the finger tips reach the object, covariance (3, 3) [m^2]
-    of the object's position in the world, of which `sigmas` standard deviations are covered, and closing_direction (3,)
-    of the fingers in the tip's frame. T_world_tip is then
+    the tip's frame, and free_length [m], the straight way before the finger tips reach the object. T_world_tip is then
     the planned grasp; tolerance, free_axes, max_tool_speed and dwell are left out.
     """
     def __init__(self, T_world_tip: numpy.typing.ArrayLike, *, tolerance: numpy.typing.ArrayLike | None = None, free_axes: collections.abc.Sequence[str] = [], max_tool_speed: float | None = None, dwell: float = 0.0, object: str = '', push: dict[str, typing.Any] | None = None) -> None:
@@ -6034,9 +6022,9 @@ class AssemblyOperation:
         AssemblyOperation([PlacedMesh("sleeve", sleeve)], [PlacedMesh("shaft", shaft)],
                           [mg.pose([0, 0, 0.1]), mg.pose([0, 0, 0])])
     """
-    def __init__(self, active: collections.abc.Sequence[PlacedMesh], passive: collections.abc.Sequence[PlacedMesh], motion: numpy.typing.ArrayLike) -> None:
+    def __init__(self, active: collections.abc.Sequence[PlacedMesh], passive: collections.abc.Sequence[PlacedMesh], motion: numpy.typing.ArrayLike, *, name: str = '', insertion_force: float = 0.0, hole: numpy.typing.ArrayLike | None = None) -> None:
         """
-        Parts held, parts that stay (fixture and table too), T_passive_active from before to the end, (m, 4, 4).
+        Parts held, parts that stay (fixture and table too), T_passive_active from before to the end, (m, 4, 4); name for messages, with what force the hole resists against the last straight line [N], a point on its axis in the frame of what is held (3,) [m] (None: the centre of mass).
         """
     def __repr__(self) -> str:
         ...
@@ -6046,9 +6034,24 @@ class AssemblyOperation:
         Held.
         """
     @property
+    def hole(self) -> numpy.typing.NDArray[numpy.float64] | None:
+        """
+        A point on the hole's axis (3,) [m]; None: the centre of mass.
+        """
+    @property
+    def insertion_force(self) -> float:
+        """
+        With which the hole resists [N].
+        """
+    @property
     def motion(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         T_passive_active, (m, 4, 4); the last one where the gripper opens.
+        """
+    @property
+    def name(self) -> str:
+        """
+        For messages and results.
         """
     @property
     def passive(self) -> list[PlacedMesh]:
@@ -6499,6 +6502,271 @@ class GraspHolding:
         """
         The loads may grow at least by this factor before a pad slips; infinite without loads.
         """
+class HoldingRequirement:
+    """
+    Grasps are to hold the weight of their parts and the resistance of holes.
+    
+        HoldingRequirement(FingerGrip(force=40), density=2700, least_safety=1.5)
+    """
+    def __init__(self, grip: FingerGrip, *, density: float = 7850.0, least_safety: float = 1.0) -> None:
+        """
+        How fingers press, density of all parts [kg/m3], the least factor by which loads may grow.
+        """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def density(self) -> float:
+        """
+        All parts have this density [kg/m3].
+        """
+    @property
+    def grip(self) -> FingerGrip:
+        """
+        How fingers press.
+        """
+    @property
+    def least_safety(self) -> float:
+        """
+        Grasps that hold less than this many times the load are refused.
+        """
+class OperationLoad:
+    """
+    Weight and insertion of one operation, in the frame of its active subassembly.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def centre(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Centre of mass [m], (3,).
+        """
+    @property
+    def grip(self) -> FingerGrip:
+        """
+        How fingers press.
+        """
+    @property
+    def hole(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        A point on its axis [m], (3,).
+        """
+    @property
+    def mass(self) -> float:
+        """
+        The active parts weigh this [kg].
+        """
+    @property
+    def resistance(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        The hole pushes with this, at the end [N], (3,).
+        """
+    @property
+    def weights(self) -> list[numpy.typing.NDArray[numpy.float64]]:
+        """
+        One (3,) per pose of the motion: gravity turns with it [N].
+        """
+class HeldLoad:
+    """
+    What a grasp does about the load of its operation.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def contact_area(self) -> float:
+        """
+        One pad touches this much [m2].
+        """
+    @property
+    def insertion_moment(self) -> float:
+        """
+        The resistance has this moment about the middle between the pads [N m].
+        """
+    @property
+    def pad_torque(self) -> float:
+        """
+        About its normal, that a pad holds beside the forces it carries at the end [N m].
+        """
+    @property
+    def safety(self) -> float:
+        """
+        The loads may grow at least by this factor before a pad slips, on the way and at its end.
+        """
+class OperationOverlap:
+    """
+    How deep the active and the passive parts of an operation stand in each other, where it is deepest.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def active(self) -> str:
+        """
+        The moved part; '' where depth is 0.
+        """
+    @property
+    def before_end(self) -> float:
+        """
+        The way that is left when it happens [m].
+        """
+    @property
+    def depth(self) -> float:
+        """
+        A point of one part's surface lies this deep in the other [m]; 0: nowhere.
+        """
+    @property
+    def passive(self) -> str:
+        """
+        The other one.
+        """
+class KeepOff:
+    """
+    The surface of a part that no finger may touch.
+    
+        KeepOff("pulley", segments=[2], boxes=[(mg.pose([0, 0, 0.02]), [0.07, 0.07, 0.004])])
+    """
+    def __init__(self, part: str, *, segments: collections.abc.Sequence[int] = [], boxes: collections.abc.Sequence[tuple[numpy.typing.ArrayLike, numpy.typing.ArrayLike]] = []) -> None:
+        """
+        Name of the part, numbers of segments that segment_mesh gives it by default, and boxes in its mesh's frame: pairs of T_mesh_box (4, 4) of the middle, and size (3,) [m].
+        """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def boxes(self) -> list[tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]]:
+        """
+        Pairs of T_mesh_box (4, 4) and size (3,) [m].
+        """
+    @property
+    def part(self) -> str:
+        """
+        The part's name.
+        """
+    @property
+    def segments(self) -> list[int]:
+        """
+        Numbers of segments.
+        """
+class SegmentedPart:
+    """
+    A part cut into segments, each with the primitive that stands for it.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def primitives(self) -> list[FittedPrimitive]:
+        """
+        One per segment.
+        """
+    @property
+    def segmentation(self) -> MeshSegmentation:
+        """
+        Its segments.
+        """
+class SegmentFate:
+    """
+    What became of one segment of a part in one operation.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def fingers(self) -> int:
+        """
+        2, 3, or 0: no gripper suits its primitive.
+        """
+    @property
+    def free(self) -> int:
+        """
+        How many of those have some finger length.
+        """
+    @property
+    def kind(self) -> str:
+        """
+        Its primitive: cylinder, box, cone or sphere.
+        """
+    @property
+    def part(self) -> str:
+        """
+        The part's name.
+        """
+    @property
+    def refused(self) -> str:
+        """
+        Why it cannot be held, or what most of its grasps fell by; '' when held.
+        """
+    @property
+    def requirements(self) -> list[int]:
+        """
+        Numbers of the plan's requirements.
+        """
+    @property
+    def segment(self) -> int:
+        """
+        Its number.
+        """
+    @property
+    def step(self) -> str:
+        """
+        The operation's name.
+        """
+    @property
+    def tried(self) -> int:
+        """
+        Grasps of it.
+        """
+class PlanGrippersResult:
+    """
+    The grippers of an assembly, and how they were come by.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def fates(self) -> list[SegmentFate]:
+        """
+        Every segment of what is moved, in every operation.
+        """
+    @property
+    def grasps(self) -> list[AssemblyGrasp]:
+        """
+        One per requirement, in the frame of the active subassembly.
+        """
+    @property
+    def help(self) -> list[str]:
+        """
+        Single changes each of which gives an operation its grasp.
+        """
+    @property
+    def holdings(self) -> list[HeldLoad]:
+        """
+        One per requirement; empty where nothing is asked of holding.
+        """
+    @property
+    def met(self) -> list[str]:
+        """
+        What each operation's rehearsal met, '' nothing; empty without a set.
+        """
+    @property
+    def missing(self) -> list[str]:
+        """
+        Operations that cannot be done, each with the reasons.
+        """
+    @property
+    def outcome(self) -> Outcome:
+        """
+        `solved`: each operation has a gripper that was rehearsed, and the set is proven; `infeasible`: an operation has no grasp to try, or its parts stand in each other (missing), or no drive takes it (set); `not_found`: no grasp that was tried goes through an operation, or a rehearsal met something; `stopped`; else as the set's.
+        """
+    @property
+    def parts(self) -> dict[str, SegmentedPart]:
+        """
+        The parts that are moved, by name.
+        """
+    @property
+    def requirements(self) -> list[SegmentRequirement]:
+        """
+        One per grasp kept; `part` is the operation's name.
+        """
+    @property
+    def set(self) -> MinimalGrippersResult | None:
+        """
+        The least set; None when something is missing.
+        """
 def _allowed_bodies(robot: Robot, world: World) -> list[tuple[str, str]]:
     ...
 def _assembly_grasp_option_table() -> dict[str, typing.Any]:
@@ -6527,8 +6795,6 @@ def _first_drive_by_guess(group: JointGroup, *, start: numpy.typing.ArrayLike, t
     """
     The guess of the first seed, for benchmarks against other optimisers; None when a task is out of reach. solve() takes it from there, judging included: whether it is solved, the duration, processor seconds that judging once more took, and iterations.
     """
-def _grasp_option_bounds() -> dict[str, typing.Any]:
-    ...
 def _grasp_option_table() -> dict[str, typing.Any]:
     ...
 def _grasp_search_option_table() -> dict[str, typing.Any]:
@@ -6545,21 +6811,19 @@ def _minimal_grippers_option_table() -> dict[str, typing.Any]:
     ...
 def _motion_option_table() -> dict[str, typing.Any]:
     ...
-def _object_path_option_bounds() -> dict[str, typing.Any]:
-    ...
 def _object_path_option_table() -> dict[str, typing.Any]:
     ...
 def _occupancy_option_table() -> dict[str, typing.Any]:
     ...
 def _pipe_grasp_option_table() -> dict[str, typing.Any]:
     ...
+def _plan_grippers_option_table() -> dict[str, typing.Any]:
+    ...
 def _platform_option_table() -> dict[str, typing.Any]:
     ...
 def _population_option_table() -> dict[str, typing.Any]:
     ...
 def _push_option_table() -> dict[str, typing.Any]:
-    ...
-def _reach_option_bounds() -> dict[str, typing.Any]:
     ...
 def _reach_option_table() -> dict[str, typing.Any]:
     ...
@@ -6584,11 +6848,7 @@ def _segmentation_option_table() -> dict[str, typing.Any]:
     ...
 def _shape_diameter_option_table() -> dict[str, typing.Any]:
     ...
-def _supply_option_bounds() -> dict[str, typing.Any]:
-    ...
 def _supply_option_table() -> dict[str, typing.Any]:
-    ...
-def _synthesis_option_bounds() -> dict[str, typing.Any]:
     ...
 def _synthesis_option_table() -> dict[str, typing.Any]:
     ...
@@ -6609,7 +6869,7 @@ def camera_view_objective(group: JointGroup, camera_link: str, point: numpy.typi
     Weight times the squared distance [m] of a world point from the optical axis (+z) of a camera on a link, plus the
     squared depth by which it lies behind the camera.
     """
-def centric_grasps(T_mesh_cylinder: numpy.typing.ArrayLike, diameter: float, low: float, high: float, *, facet_angle: float = 0.1, parallel_angle: float = 0.05, directions: int = 12, min_contact: float = 0.003, pad_length: float = 0.02, max_opening: float = 0.25, finger_width: float = 0.015, finger_thickness: float = 0.008, clearance: float = 0.002, palm_margin: float = 0.005) -> list[AssemblyGrasp]:
+def centric_grasps(T_mesh_cylinder: numpy.typing.ArrayLike, diameter: float, low: float, high: float, *, facet_angle: float = 0.1, parallel_angle: float = 0.05, directions: int = 12, min_contact: float = 0.003, pad_length: float = 0.02, max_opening: float = 0.25, finger_width: float = 0.015, finger_thickness: float = 0.008, clearance: float = 0.002, tip_clearance: float = 0.0, palm_margin: float = 0.005) -> list[AssemblyGrasp]:
     """
     Grasps by three centric fingers along the z axis of a cylinder that ends at `low` and `high` on it [m], from either end, fingers turned in steps, at up to three depths (P1 5.2.3).
     
@@ -6623,13 +6883,14 @@ def centric_grasps(T_mesh_cylinder: numpy.typing.ArrayLike, diameter: float, low
         finger_width: float = 0.015  # across approach and closing direction [m]
         finger_thickness: float = 0.008  # along the closing direction [m]
         clearance: float = 0.002  # by which each finger opens to approach and to let go [m]
+        tip_clearance: float = 0.0  # tips end this short of the far end of what they hold [m]
         palm_margin: float = 0.005  # the palm reaches beyond the open fingers by this [m]
     """
 def cheapest_assignment(costs: numpy.typing.ArrayLike) -> list[int]:
     """
     A column of its own for each row of (n, n) so that the sum of costs is least.
     """
-def closing_outcome(start: float, *, opening: float = 0.1, closing_speed: float = 0.1, tool_speed: float = 0.3, finger_length: float = 0.12, object_width: float = 0.05, grip_depth: float = 0.02, planned_depth: float = 0.06, clearance: float = 0.0, max_push: float = 0.1, along_error: float = 0.0, lateral_error: float = 0.0, along_deviation: float = 0.0, lateral_deviation: float = 0.0, sigmas: float = 3.0) -> ClosingOutcome:
+def closing_outcome(start: float, *, opening: float = 0.1, closing_speed: float = 0.1, tool_speed: float = 0.3, finger_length: float = 0.12, object_width: float = 0.05, grip_depth: float = 0.02, planned_depth: float = 0.06, clearance: float = 0.0, max_push: float = 0.1, along_error: float = 0.0, lateral_error: float = 0.0) -> ClosingOutcome:
     """
     What beginning to close at an engagement [m] comes to.
     
@@ -6645,9 +6906,6 @@ def closing_outcome(start: float, *, opening: float = 0.1, closing_speed: float 
         max_push: float = 0.1  # how far the object may slide before the palm [m]
         along_error: float = 0.0  # the object may stand this much nearer or farther [m]
         lateral_error: float = 0.0  # and this much to either side [m]
-        along_deviation: float = 0.0  # standard deviation of the object's position along the approach [m]
-        lateral_deviation: float = 0.0  # the same along the closing direction [m]
-        sigmas: float = 3.0  # errors of this many deviations are covered
     """
 def compute_base_regions(problem: PartSupplyProblem, database: ReachDatabase, grid: BaseGrid, *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None) -> list[BaseRegion]:
     """
@@ -6774,6 +7032,10 @@ def follow_object_path(problem: ObjectPathProblem, grasp: Grasp, *, motion_weigh
         gravity: float = 9.81  # along the world's -z [m/s2]
         max_sag: float = 0.0  # largest displacement allowed at any pose [m]; 0: any
     """
+def free_gripper(gripper: Gripper) -> JointGroup:
+    """
+    A gripper, read from its own files, on six joints that carry its base anywhere: x, y, z [m], then yaw, pitch, roll [rad]. The fingers' joint is "finger_1_joint".
+    """
 def grasp_holding(grasp: AssemblyGrasp, grip: FingerGrip, *, weight: numpy.typing.ArrayLike | None = None, centre: numpy.typing.ArrayLike | None = None, resistance: numpy.typing.ArrayLike | None = None, hole: numpy.typing.ArrayLike | None = None) -> GraspHolding:
     """
     Whether soft fingers hold a part against its weight, and against weight and insertion (P1 5.3.5). `weight` [N] acts at `centre` [m], `resistance` of the insertion [N], against the motion, at `hole` [m], a point on the hole's axis; (3,), in the frame of the grasp's pose, None: zero. The grasp must know its contact_length and contact_width. Loads are shared so that the sum of squares is least, which bounds what can be held from below; pads slip by the limit surface of soft_finger_torque.
@@ -6816,11 +7078,15 @@ def hand_masks(gripper: Hand, opening: float, angle: float, resolution: float, *
         max_grasps: int = 100  # best kept
         threads: int = 0  # 0: all
     """
+def held_load(grasp: AssemblyGrasp, load: OperationLoad) -> HeldLoad:
+    """
+    What a grasp, in the frame of the active subassembly, does about a load: the least safety over motion and end, the rest at the end (see grasp_holding).
+    """
 def inscribed_circle(grid: BaseGrid, cells: numpy.typing.ArrayLike, heading: int = 0) -> tuple[numpy.typing.NDArray[numpy.float64], float]:
     """
     Centre (2,) and radius [m] of the largest disc inside the union of cells of one layer.
     """
-def jaw_grasps(mesh: Mesh, faces: collections.abc.Sequence[int] = [], *, facet_angle: float = 0.1, parallel_angle: float = 0.05, directions: int = 12, min_contact: float = 0.003, pad_length: float = 0.02, max_opening: float = 0.25, finger_width: float = 0.015, finger_thickness: float = 0.008, clearance: float = 0.002, palm_margin: float = 0.005) -> list[AssemblyGrasp]:
+def jaw_grasps(mesh: Mesh, faces: collections.abc.Sequence[int] = [], *, facet_angle: float = 0.1, parallel_angle: float = 0.05, directions: int = 12, min_contact: float = 0.003, pad_length: float = 0.02, max_opening: float = 0.25, finger_width: float = 0.015, finger_thickness: float = 0.008, clearance: float = 0.002, tip_clearance: float = 0.0, palm_margin: float = 0.005) -> list[AssemblyGrasp]:
     """
     Grasps by two parallel jaws: opposite, nearly parallel facets of a segment (`faces`; none: the whole mesh) whose shadows overlap, approached from every direction across the closing axis, at up to three depths (P1 5.3.3).
     
@@ -6834,6 +7100,7 @@ def jaw_grasps(mesh: Mesh, faces: collections.abc.Sequence[int] = [], *, facet_a
         finger_width: float = 0.015  # across approach and closing direction [m]
         finger_thickness: float = 0.008  # along the closing direction [m]
         clearance: float = 0.002  # by which each finger opens to approach and to let go [m]
+        tip_clearance: float = 0.0  # tips end this short of the far end of what they hold [m]
         palm_margin: float = 0.005  # the palm reaches beyond the open fingers by this [m]
     """
 def joint_limit_objective(group: JointGroup, soft_fraction: float = 0.1, weight: float = 1.0) -> IkObjective:
@@ -6925,6 +7192,14 @@ def next_view(map: ProbabilisticSdf, hand: Hand, camera: DepthCamera, *, table: 
 def nlp_solver_names() -> list[str]:
     """
     Names that plan_drive_by's `solver` takes.
+    """
+def operation_load(operation: AssemblyOperation, requirement: HoldingRequirement) -> OperationLoad:
+    """
+    The load of an operation; gravity acts along -z of the passive subassembly. InvalidInput for an active part whose mesh is not closed: it has no volume.
+    """
+def operation_overlap(operation: AssemblyOperation, *, allowed: float = 0.0, progress: collections.abc.Callable[[str, float], typing.Any] | None = None) -> OperationOverlap:
+    """
+    The deepest overlap at the end of an operation or, if that is at most `allowed` [m], along its motion (every 2 mm and 0.05 rad, from the end back to the first look that is deeper). Judged at corners and points drawn over the surfaces, so that what it tells is there; what is thinner than their distance may be missed.
     """
 def optimised_order(grid: BaseGrid, cells: collections.abc.Sequence[collections.abc.Sequence[numpy.typing.ArrayLike]], groups: collections.abc.Sequence[collections.abc.Sequence[int]], order: collections.abc.Sequence[collections.abc.Sequence[int]], *, smallest_first: bool = False, restarts: int = 20, rng_seed: int = 1) -> OptimisedOrder:
     """
@@ -7030,6 +7305,27 @@ def plan_drive_by(robot: Robot | CollisionChecker, group: JointGroup | None = No
         margin: float = 0.005  # distance to keep from obstacles and from oneself [m]
         constraint_distance: float = 0.15  # pairs of bodies nearer than this are constrained [m]
         refinements: int = 6  # times that collision constraints may be added
+    """
+def plan_grippers(operations: collections.abc.Sequence[AssemblyOperation], actuators: collections.abc.Sequence[GripperActuator], *, keep_off: collections.abc.Sequence[KeepOff] = [], holding: HoldingRequirement | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, finger_width: float = 0.015, finger_thickness: float = 0.008, clearance: float = 0.002, shortest_finger: float = 0.01, longest_finger: float = 0.15, opening_margin: float = 0.001, length_margin: float = 0.001, min_contact: float = 0.003, tip_clearance: float = 0.0005, directions: int = 12, max_overlap: float = 0.0005, change_cost: float = 0.0, max_nodes: int = 20000, time_limit: float = 60.0, threads: int = 0) -> PlanGrippersResult:
+    """
+    The least set of grippers that puts an assembly together (P1 chapter 5), from meshes and an order: segments, primitives (boxes for two jaws, cylinders for three centric fingers), grasps that meet nothing over the whole operation with some finger length, the least set, and every operation gone through again with the gripper itself by the collision checker. Of several segments and depths that no more grippers could take, the one is taken on which the insertion bears most evenly, then the one held most safely (both with `holding`), then the one touched on most surface.
+    
+    Keyword options:
+        finger_width: float = 0.015  # across approach and closing direction [m]
+        finger_thickness: float = 0.008  # along the closing direction [m]
+        clearance: float = 0.002  # how far each finger opens to approach and to let go [m]
+        shortest_finger: float = 0.01  # no finger is shorter [m]
+        longest_finger: float = 0.15  # no finger is longer [m]
+        opening_margin: float = 0.001  # stroke kept free beyond the part at either end [m]
+        length_margin: float = 0.001  # kept from either limit of the finger length [m]
+        min_contact: float = 0.003  # pads overlap a segment by at least this, along the approach [m]
+        tip_clearance: float = 0.0005  # tips end this short of the far end of the segment [m]
+        directions: int = 12  # approaches about the closing axis, or turns of centric fingers
+        max_overlap: float = 0.0005  # parts may stand in each other by this [m]
+        change_cost: float = 0.0  # of changing the gripper between two operations
+        max_nodes: int = 20000  # of the search for fewest changes
+        time_limit: float = 60.0  # the search for the least set ends after this, on the clock [s]
+        threads: int = 0  # 0: all
     """
 def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None = None, checker: CollisionChecker | None = None, padding: float | mmgrasp.records.WorldPadding | collections.abc.Mapping[str, float | collections.abc.Mapping[str, float]] | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, on_solution: collections.abc.Callable[[Improvement], typing.Any] | None = None, planner: str = 'prm_star_mg', ik_solutions: int = 8, first_grasps: int = 4, straight: bool = True, ik_restarts: int = 30, joint_step: float = 0.02, workspace_step: float = 0.005, joint_weights: numpy.typing.ArrayLike | collections.abc.Mapping[str, float] | None = None, max_length: float = 0.0, time_limit: float = 15.0, seed: int = 1, threads: int = 0, batch: int = 0, lazy_grasps: bool = True, max_vertices: int = 0, shorten: bool = True, refinements: int = 4, vertices: int = 5000, gamma: float = 0.0, neighbours: int = 0, roadmap_seed: int = 1, max_iterations: int = 1000, range: float = 1.5, rrt_gamma: float = 0.0, exploration: float = 0.5, bidirectional: bool = True, informed: bool = True, goal_cost: float = 0.0, keep_trees: bool = False) -> ManipulationResult:
     """
@@ -7200,7 +7496,7 @@ def preferred_grippers(requirements: collections.abc.Sequence[SegmentRequirement
         max_nodes: int = 20000  # of the search for fewest changes
         time_limit: float = 60.0  # wall-clock cap [s]
     """
-def push_grasp(*, hand: Hand | None = None, opening: float = 0.1, closing_speed: float = 0.1, tool_speed: float = 0.3, finger_length: float = 0.12, object_width: float = 0.05, grip_depth: float = 0.02, planned_depth: float = 0.06, clearance: float = 0.0, max_push: float = 0.1, along_error: float = 0.0, lateral_error: float = 0.0, along_deviation: float = 0.0, lateral_deviation: float = 0.0, sigmas: float = 3.0) -> PushGrasp:
+def push_grasp(*, hand: Hand | None = None, opening: float = 0.1, closing_speed: float = 0.1, tool_speed: float = 0.3, finger_length: float = 0.12, object_width: float = 0.05, grip_depth: float = 0.02, planned_depth: float = 0.06, clearance: float = 0.0, max_push: float = 0.1, along_error: float = 0.0, lateral_error: float = 0.0) -> PushGrasp:
     """
     When a hand that moves on may begin to close, and what error of the object's position it forgives (P1 4.3).
     Lengths are those of `hand` where no keyword gives them.
@@ -7217,9 +7513,6 @@ def push_grasp(*, hand: Hand | None = None, opening: float = 0.1, closing_speed:
         max_push: float = 0.1  # how far the object may slide before the palm [m]
         along_error: float = 0.0  # the object may stand this much nearer or farther [m]
         lateral_error: float = 0.0  # and this much to either side [m]
-        along_deviation: float = 0.0  # standard deviation of the object's position along the approach [m]
-        lateral_deviation: float = 0.0  # the same along the closing direction [m]
-        sigmas: float = 3.0  # errors of this many deviations are covered
     """
 def push_speed_limit(*, length: float, friction: float, restitution: float) -> float:
     """
@@ -7265,6 +7558,10 @@ def register_frame(sdf: ProbabilisticSdf, image: DepthImage, camera: DepthCamera
         max_correction: float = 4.0  # farther from the given pose, in its standard deviations, is refused
         min_observability: float = 0.0015  # directions along which the surface moves by less than this share of the motion stay as given
         threads: int = 0  # 0: all
+    """
+def rehearse_operation(gripper: Gripper, grasp: AssemblyGrasp, operation: AssemblyOperation) -> str:
+    """
+    What a gripper meets first when it goes through an operation, told by the collision checker: while it approaches from 0.1 m away, grasps, moves, and lets go and moves back as far. '' when nothing.
     """
 def render_depth(scene: collections.abc.Sequence[LinkShape], camera: PinholeCamera, T_world_camera: numpy.typing.ArrayLike, *, noise: float = 0.0, missing: float = 0.0, seed: int = 1, threads: int = 0) -> DepthImage:
     """
@@ -7324,6 +7621,27 @@ def segment_depth_image(image: DepthImage, *, plane: SupportingPlane | None = No
         concavity: float = 0.45  # creases of up to this angle do not part objects [rad]
         min_points: int = 100  # smaller objects are left out
         plane_iterations: int = 1000  # random planes tried
+    """
+def segment_grasps(part: PlacedMesh, segment: MeshSegment, primitive: FittedPrimitive, actuators: collections.abc.Sequence[GripperActuator], *, finger_width: float = 0.015, finger_thickness: float = 0.008, clearance: float = 0.002, shortest_finger: float = 0.01, longest_finger: float = 0.15, opening_margin: float = 0.001, length_margin: float = 0.001, min_contact: float = 0.003, tip_clearance: float = 0.0005, directions: int = 12, max_overlap: float = 0.0005, change_cost: float = 0.0, max_nodes: int = 20000, time_limit: float = 60.0, threads: int = 0) -> list[AssemblyGrasp]:
+    """
+    The grasps that plan_grippers tries of a segment, in the frame of the active subassembly; the palm is as wide as that of the widest gripper that may take it.
+    
+    Keyword options:
+        finger_width: float = 0.015  # across approach and closing direction [m]
+        finger_thickness: float = 0.008  # along the closing direction [m]
+        clearance: float = 0.002  # how far each finger opens to approach and to let go [m]
+        shortest_finger: float = 0.01  # no finger is shorter [m]
+        longest_finger: float = 0.15  # no finger is longer [m]
+        opening_margin: float = 0.001  # stroke kept free beyond the part at either end [m]
+        length_margin: float = 0.001  # kept from either limit of the finger length [m]
+        min_contact: float = 0.003  # pads overlap a segment by at least this, along the approach [m]
+        tip_clearance: float = 0.0005  # tips end this short of the far end of the segment [m]
+        directions: int = 12  # approaches about the closing axis, or turns of centric fingers
+        max_overlap: float = 0.0005  # parts may stand in each other by this [m]
+        change_cost: float = 0.0  # of changing the gripper between two operations
+        max_nodes: int = 20000  # of the search for fewest changes
+        time_limit: float = 60.0  # the search for the least set ends after this, on the clock [s]
+        threads: int = 0  # 0: all
     """
 def segment_mesh(mesh: Mesh, *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, rays: int = 30, cone: float = 2.0943951023931953, outlier: float = 1.0, ray_lengths: bool = False, max_clusters: int = 8, smoothing: float = 0.3, crease: float = 0.6, min_size: float = 0.02, convexity: float = 0.05, smooth_threads: bool = True, faces: int = 20000, seed: int = 1, threads: int = 0) -> MeshSegmentation:
     """
@@ -7545,11 +7863,5 @@ def wheel_speeds(v: float, omega: float, wheel_separation: float) -> tuple[float
 def with_sampled_pairs(robot: Robot, *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None) -> Robot:
     """
     compute_disabled_pairs with default options, its result cached on disk under the robot's hash.
-    """
-def write_plan(problem: PartSupplyProblem, database: ReachDatabase, plan: PartSupplyPlan, path: str | os.PathLike[str], *, name: str = 'round', source: str = 'a program', closing_speed: float = 0.1) -> None:
-    """
-    Writes plan.json for a problem given as objects and the plan made with this database, so that `mmgrasp verify` and
-    `mmgrasp view` take it; `closing_speed` of the gripper [m/s]. InvalidInput for shapes that a plan cannot hold
-    (planes but for the floor, voxels, meshes without a file) and a plan of another problem.
     """
 __version__: str = '0.1.0'

@@ -40,6 +40,8 @@ def _print(plan: GripperPlan, console: Console) -> None:
     from ..viz.gripper_report import proof
     from ..viz.report import plural
 
+    for note in plan.notes:
+        console.print(f"note: {note}", markup=False, soft_wrap=True)
     result = plan.result
     if not plan.solved or result is None:
         console.print(f"no grippers: {plan.outcome.name.replace('_', ' ')}", style="bold red", markup=False)
@@ -47,6 +49,8 @@ def _print(plan: GripperPlan, console: Console) -> None:
         faults += [f"{step}: {met}" for step, met in plan.rehearsed.items() if met]
         for fault in faults:
             console.print(f"- {fault}", markup=False, soft_wrap=True)
+        for change in plan.help:
+            console.print(f"  would help: {change}", markup=False, soft_wrap=True)
         return
     what = f"{plural(len(result.grippers), 'gripper')} for {plural(len(result.parts), 'operation')}"
     console.print(f"{what}: {proof(plan)}", markup=False)

@@ -55,6 +55,12 @@ SECTIONS: tuple[tuple[str, str, Table, set[str]], ...] = (
         set(),
     ),
     (
+        "plan_grippers",
+        "From parts and an order to grippers, keywords (`PlanGrippersOptions`)",
+        _core._plan_grippers_option_table,
+        set(),
+    ),
+    (
         "minimal_grippers",
         "The least set of grippers, keywords (`MinimalGrippersOptions`)",
         _core._minimal_grippers_option_table,

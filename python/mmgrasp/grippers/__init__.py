@@ -1,8 +1,7 @@
 """From an assembly's files to the grippers it needs: reading, grasps under assembly constraints, the least set, files."""
 
 from .assembly_file import Assembly, AssemblyPart, AssemblyStep, FingerChoice, HoldingChoice, load_assembly
-from .holding import Held
-from .planning import GripperPlan, SegmentFate, plan_grippers
+from .planning import GripperPlan, plan_grippers
 
 __all__ = [
     "Assembly",
@@ -10,9 +9,7 @@ __all__ = [
     "AssemblyStep",
     "FingerChoice",
     "GripperPlan",
-    "Held",
     "HoldingChoice",
-    "SegmentFate",
     "load_assembly",
     "plan_grippers",
 ]

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .._core import GripperActuator, InvalidInput, Mesh
+from .. import _core
+from .._core import FingerGrip, GripperActuator, HoldingRequirement, InvalidInput, Mesh
 from .._files import ASSETS, shipped
 from ..documents.reading import Node, near_miss, read_yaml
 from ..scenario.robot_section import find_file
@@ -20,7 +21,9 @@ Pose = NDArray[np.float64]
 
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001}
 LARGEST_PART, SMALLEST_PART = 2.0, 0.0005  # [m]
-SET_OPTIONS = ("change_cost", "time_limit", "max_nodes")
+FINGER_DEFAULTS: dict[str, Any] = {name: value for name, (value, _) in _core._plan_grippers_option_table().items()}
+LOAD_DEFAULTS = HoldingRequirement(FingerGrip())
+SET_OPTIONS = ("change_cost", "time_limit", "max_nodes", "max_overlap")
 
 
 @dataclass
@@ -33,6 +36,8 @@ class AssemblyPart:
     """T_assembly_mesh."""
     keep_off: list[int] = field(default_factory=list)
     """Segments that no finger may touch."""
+    keep_off_boxes: list[tuple[Pose, NDArray[np.float64]]] = field(default_factory=list)
+    """Boxes whose surface no finger may touch: T_mesh_box of the middle, size [m]."""
     source: str = ""
 
 
@@ -55,16 +60,16 @@ class AssemblyStep:
 class HoldingChoice:
     """What fingers press with and are made of, for grasps that are to hold weight and insertion."""
 
-    force: float = 50.0
+    force: float = LOAD_DEFAULTS.grip.force
     """Each finger presses with this [N]."""
-    friction: float = 0.5
-    modulus: float = 3e6
+    friction: float = LOAD_DEFAULTS.grip.friction
+    modulus: float = LOAD_DEFAULTS.grip.modulus
     """Plane strain modulus of pad and part together [Pa]."""
     pad_radius: float | None = None
     """Hollow pads of centric fingers have this radius [m]; None: flat."""
-    density: float = 7850.0
+    density: float = LOAD_DEFAULTS.density
     """All parts have this density [kg/m3]."""
-    least_safety: float = 1.0
+    least_safety: float = LOAD_DEFAULTS.least_safety
     """Grasps that hold less than this many times the load are refused."""
 
 
@@ -72,15 +77,16 @@ class HoldingChoice:
 class FingerChoice:
     """Straight fingers that may be made [m]."""
 
-    width: float = 0.015
-    thickness: float = 0.008
-    clearance: float = 0.002
-    shortest: float = 0.01
-    longest: float = 0.15
-    opening_margin: float = 0.001
-    length_margin: float = 0.001
-    min_contact: float = 0.003
-    directions: int = 12
+    width: float = FINGER_DEFAULTS["finger_width"]
+    thickness: float = FINGER_DEFAULTS["finger_thickness"]
+    clearance: float = FINGER_DEFAULTS["clearance"]
+    shortest: float = FINGER_DEFAULTS["shortest_finger"]
+    longest: float = FINGER_DEFAULTS["longest_finger"]
+    opening_margin: float = FINGER_DEFAULTS["opening_margin"]
+    length_margin: float = FINGER_DEFAULTS["length_margin"]
+    min_contact: float = FINGER_DEFAULTS["min_contact"]
+    tip_clearance: float = FINGER_DEFAULTS["tip_clearance"]
+    directions: int = FINGER_DEFAULTS["directions"]
 
 
 @dataclass
@@ -94,7 +100,7 @@ class Assembly:
     actuators: list[GripperActuator]
     fingers: FingerChoice
     options: dict[str, Any] = field(default_factory=dict)
-    """Options of minimal_grippers."""
+    """Further options of `mmgrasp.gripper_design.plan_grippers`."""
     unit: str = "m"
     holding: HoldingChoice | None = None
     """None: weight and insertion are not looked at."""
@@ -150,7 +156,7 @@ def _read_assembly(root: Node, source: str) -> Assembly:
         _read_order(root["order"], parts, scale),
         [_read_actuator(node, scale) for node in _filled(root["actuators"])],
         _read_fingers(root, scale),
-        _read_options(root),
+        _read_options(root, scale),
         unit,
         holding,
     )
@@ -192,9 +198,23 @@ def _read_part(node: Node, scale: float, unit: str) -> AssemblyPart:
             f"is {size:.4g} m from corner to corner with unit: {unit}; parts from {SMALLEST_PART:g} to {LARGEST_PART:g} m "
             "can be held: is another unit meant?"
         )
-    keep_off = [segment.integer(least=0) for segment in node["keep_off"].elements()] if "keep_off" in node else []
+    segments, boxes = _read_keep_off(node, scale)
     pose = _pose(node["pose"], scale) if "pose" in node else np.eye(4)
-    return AssemblyPart(name, mesh, pose, keep_off, source)
+    return AssemblyPart(name, mesh, pose, segments, boxes, source)
+
+
+def _read_keep_off(part: Node, scale: float) -> tuple[list[int], list[tuple[Pose, NDArray[np.float64]]]]:
+    """Numbers of segments, and boxes."""
+    segments: list[int] = []
+    boxes: list[tuple[Pose, NDArray[np.float64]]] = []
+    for element in part["keep_off"].elements() if "keep_off" in part else []:
+        if not isinstance(element.raw, dict):
+            segments.append(element.integer(least=0))
+            continue
+        element.mapping("box", "pose")
+        place = _pose(element["pose"], scale) if "pose" in element else np.eye(4)
+        boxes.append((place, np.array(element["box"].numbers(3, above=0)) * scale))
+    return segments, boxes
 
 
 def _turned(node: Node, scale: float) -> Mesh:
@@ -307,14 +327,14 @@ def _read_fingers(root: Node, scale: float) -> FingerChoice:
     if "fingers" not in root:
         return choice
     node = root["fingers"]
-    lengths = "width thickness clearance shortest longest opening_margin length_margin min_contact"
+    lengths = "width thickness clearance shortest longest opening_margin length_margin min_contact tip_clearance"
     node.mapping("", lengths + " directions")
     for key, value in node.items():
         if key == "directions":
             choice.directions = value.integer(least=1)
             if choice.directions > 360:
                 value.fail("must be at most 360")
-        elif key in ("clearance", "opening_margin", "length_margin"):
+        elif key in ("clearance", "opening_margin", "length_margin", "tip_clearance"):
             setattr(choice, key, value.number(least=0) * scale)
         else:
             setattr(choice, key, value.number(above=0) * scale)
@@ -323,11 +343,14 @@ def _read_fingers(root: Node, scale: float) -> FingerChoice:
     return choice
 
 
-def _read_options(root: Node) -> dict[str, Any]:
+def _read_options(root: Node, scale: float) -> dict[str, Any]:
     if "options" not in root:
         return {}
     node = root["options"].mapping("", " ".join(SET_OPTIONS))
     out: dict[str, Any] = {}
     for key, value in node.items():
-        out[key] = value.integer(least=1) if key == "max_nodes" else value.number(least=0)
+        if key == "max_nodes":
+            out[key] = value.integer(least=1)
+        else:
+            out[key] = value.number(least=0) * (scale if key == "max_overlap" else 1.0)
     return out

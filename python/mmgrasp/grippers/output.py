@@ -9,9 +9,8 @@ from typing import Any
 import numpy as np
 
 from .. import _core
-from .._core import AssemblyGrasp, SegmentRequirement
+from .._core import AssemblyGrasp, HeldLoad, SegmentRequirement
 from .._files import write_file
-from .holding import Held
 from .planning import GripperPlan
 
 GRIPPER_FOLDERS = "gripper_*"
@@ -35,6 +34,8 @@ def result_to_dict(plan: GripperPlan) -> dict[str, Any]:
         "assembly": {"name": assembly.name, "source": assembly.source},
         "outcome": plan.outcome.name,
         "missing": plan.missing,
+        "help": plan.help,
+        "notes": plan.notes,
         "grippers": [],
         "operations": [],
         "segments": [
@@ -89,7 +90,7 @@ def _requirement(requirement: SegmentRequirement, grasp: AssemblyGrasp) -> dict[
     }
 
 
-def _held(held: Held) -> dict[str, Any]:
+def _held(held: HeldLoad) -> dict[str, Any]:
     return {
         "safety": held.safety if np.isfinite(held.safety) else None,
         "insertion_moment": held.insertion_moment,

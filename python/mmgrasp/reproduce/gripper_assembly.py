@@ -17,12 +17,13 @@ from .._core import (
     LinkShape,
     World,
     finger_length_range,
+    free_gripper,
     minimal_grippers,
+    segment_grasps,
 )
 from ..grippers.assembly_file import FingerChoice
 from ..grippers.motor_product import CONTACT, ORDER, motor_product
-from ..grippers.planning import FINGERS_OF, GripperPlan, operation_of, plan_grippers, segment_grasps
-from ..grippers.rehearsal import free_gripper
+from ..grippers.planning import FINGERS_OF, GripperPlan, operation_of, options_of, plan_grippers
 from ..viz.gripper_pictures import gripper_bodies
 from ..viz.style import OBSTACLE, PART
 from ..viz.two_sides import FROM_ABOVE_AND_ASIDE, Body, two_sides
@@ -46,7 +47,7 @@ LONG = {"5": (3, 40, 41), "8": (3, 40, 50), "9": (3, 40, 41), "10": (2, 17, 4.5)
 # --- figure 5.14 ------------------------------------------------------------------------------------------------------
 def opening_of(gripper: Gripper, joint: float) -> float:
     """Diameter of the largest round bar between the pads at a position of the fingers, by the gripper's own files and the collision checker [m]."""
-    robot, group = free_gripper(gripper)
+    group = free_gripper(gripper)
     checker_group = group.with_reference({"finger_1_joint": joint})
     middle = _core.pose([0, 0, gripper.palm_height + gripper.finger_length - 0.004])
     low, high = 0.0, 2 * gripper.max_opening
@@ -54,7 +55,7 @@ def opening_of(gripper: Gripper, joint: float) -> float:
         bar = (low + high) / 2
         world = World()
         world.add("bar", [LinkShape(Cylinder(bar / 2, 0.004))], middle)
-        if CollisionChecker(robot, world, checker_group).is_free(np.zeros(6)):
+        if CollisionChecker(group.robot, world, checker_group).is_free(np.zeros(6)):
             low = bar
         else:
             high = bar
@@ -134,11 +135,14 @@ def least_length(plan: GripperPlan, part: str, fingers: int, opening: float) -> 
     """Least finger length by which a segment is held from above, at full size [mm]."""
     step = next(step for step in plan.assembly.steps if step.name == part)
     operation = operation_of(plan.assembly, step)
+    (placed,) = operation.active
+    options = options_of(plan.assembly)
     least = None
     for segment, primitive in enumerate(plan.primitives[part]):
         if FINGERS_OF.get(primitive.kind) != fingers:
             continue
-        for grasp in segment_grasps(plan, part, segment):
+        body = plan.segmentations[part].segments[segment]
+        for grasp in segment_grasps(placed, body, primitive, plan.assembly.actuators, **options):
             if grasp.T_active_tool[2, 2] > -0.999 or abs(1e3 * grasp.opening / SCALE - opening) > 0.2:
                 continue
             lengths = finger_length_range(grasp, operation)

@@ -7,7 +7,7 @@ from html import escape
 from pathlib import Path
 
 from .. import _core
-from ..grippers.holding import Held
+from .._core import HeldLoad
 from ..grippers.planning import GripperPlan
 from .gripper_pictures import picture_name
 from .report import CSS, plural, table
@@ -20,6 +20,7 @@ def gripper_report_html(plan: GripperPlan, pictures: Path | None) -> str:
     sections = [
         _headline(plan),
         _obstacles(plan),
+        _notes(plan),
         _grippers(plan),
         _operations(plan, pictures),
         _segments(plan, pictures),
@@ -71,9 +72,16 @@ def _obstacles(plan: GripperPlan) -> str:
     if plan.result is not None:
         faults += plan.result.explanations
     faults += [f"{step}: {met}" for step, met in plan.rehearsed.items() if met]
+    faults += [f"Would help: {change}" for change in plan.help]
     if not faults:
         return ""
     return "<h2>What stands in the way</h2>" + "".join(f'<div class="bad">{escape(f)}</div>' for f in faults)
+
+
+def _notes(plan: GripperPlan) -> str:
+    if not plan.notes:
+        return ""
+    return "<h2>Meshes to look at</h2><ul>" + "".join(f"<li>{escape(note)}</li>" for note in plan.notes) + "</ul>"
 
 
 def _grippers(plan: GripperPlan) -> str:
@@ -110,14 +118,14 @@ def _operations(plan: GripperPlan, pictures: Path | None) -> str:
         gripper = result.grippers[result.gripper_of_part[i]].name
         row = [escape(part), escape(gripper), escape(r.segment), _millimetres(r.opening), least + most]
         rows.append(row + _held(plan.holdings[result.requirement_of_part[i]]))
-    head = ["Operation", "Gripper", "Held by", "Opening [mm]", "Fingers [mm]"]
+    head = ["Operation", "Gripper", "HeldLoad by", "Opening [mm]", "Fingers [mm]"]
     if plan.assembly.holding is not None:
         head += ["Load may grow by", "Moment of the insertion [N m]", "Torque a pad holds [N m]", "A pad touches [mm²]"]
     out += table(head, rows, {3, 5, 6, 7, 8})
     return out + "".join(_figure(pictures, picture_name("operation", s.name), s.name) for s in plan.assembly.steps)
 
 
-def _held(held: Held | None) -> list[str]:
+def _held(held: HeldLoad | None) -> list[str]:
     if held is None:
         return []
     numbers = (held.safety, held.insertion_moment, held.pad_torque, 1e6 * held.contact_area)

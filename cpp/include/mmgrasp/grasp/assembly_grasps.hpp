@@ -17,6 +17,8 @@ struct MMGRASP_EXPORT AssemblyGraspOptions {
   double pad_length = 0.02;    ///< Length of a pad along the approach [m], >= min_contact.
   double max_opening = 0.25;   ///< Wider segments are left out [m], > 0.
   double finger_width = 0.015, finger_thickness = 0.008, clearance = 0.002;  ///< See AssemblyGrasp [m].
+  double tip_clearance = 0;    ///< Tips end this short of the far end of what they hold, as far as min_contact
+                               ///< lets them [m], >= 0.
   double palm_margin = 0.005;  ///< The palm reaches beyond the open fingers by this [m], >= 0.
   void check() const;          ///< Throws InvalidInput naming field, value and rule.
 };

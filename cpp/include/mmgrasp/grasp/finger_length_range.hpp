@@ -2,6 +2,7 @@
 
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,7 +27,11 @@ struct MMGRASP_EXPORT AssemblyOperation {
   /// T_passive_active from before the operation to its end, at least one pose; straight lines and even turns between
   /// them. The last one is where the gripper opens.
   std::vector<Pose> motion;
-  void check() const;  ///< Throws InvalidInput: a mesh missing, no motion, poses that are none.
+  std::string name = {};       ///< For messages and results.
+  double insertion_force = 0;  ///< With which the hole resists, against the motion's last straight line [N]; >= 0.
+  /// A point on the hole's axis, in the frame of the active subassembly [m]; none: its centre of mass.
+  std::optional<Eigen::Vector3d> hole = {};
+  void check() const;  ///< Throws InvalidInput: a mesh missing, no motion, poses that are none, a force without a way.
 };
 
 /// How a gripper with straight fingers takes the active subassembly. The tool frame lies in the plane of the finger

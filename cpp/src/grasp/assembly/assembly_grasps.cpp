@@ -131,8 +131,9 @@ std::optional<Eigen::Vector2d> centre_of(const std::vector<Polygon>& pieces) {
 
 std::vector<double> depths(double extent, const AssemblyGraspOptions& options) {
   std::vector<double> out;
+  const double most = std::max(extent - options.tip_clearance, std::min(extent, options.min_contact));
   for (const double wanted : {options.min_contact, options.pad_length / 2, options.pad_length}) {
-    const double depth = std::min(wanted, extent);
+    const double depth = std::min(wanted, most);
     if (depth >= options.min_contact - 1e-9 && (out.empty() || depth > out.back() + 1e-6)) out.push_back(depth);
   }
   return out;
@@ -208,6 +209,7 @@ void AssemblyGraspOptions::check() const {
   positive("finger_thickness", finger_thickness);
   require(pad_length >= min_contact, "pad_length", pad_length, "must be at least min_contact [m]");
   require(std::isfinite(clearance) && clearance >= 0, "clearance", clearance, "must be at least 0 [m]");
+  require(std::isfinite(tip_clearance) && tip_clearance >= 0, "tip_clearance", tip_clearance, "must be at least 0 [m]");
   require(std::isfinite(palm_margin) && palm_margin >= 0, "palm_margin", palm_margin, "must be at least 0 [m]");
 }
 

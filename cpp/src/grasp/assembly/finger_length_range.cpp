@@ -276,6 +276,13 @@ void AssemblyOperation::check() const {
   for (std::size_t i = 0; i < motion.size(); ++i) {
     if (!is_pose(motion[i])) throw InvalidInput("motion[" + std::to_string(i) + "] is no pose");
   }
+  require(std::isfinite(insertion_force) && insertion_force >= 0, "insertion_force", insertion_force,
+          "must be at least 0 [N]");
+  if (hole && !hole->allFinite()) throw InvalidInput("hole: must be a finite point [m]");
+  if (insertion_force == 0) return;
+  const bool straight =
+      motion.size() > 1 && (motion.back().translation() - motion.end()[-2].translation()).norm() > kTouching;
+  require(straight, "insertion_force", insertion_force, "needs a motion that ends with a straight line");
 }
 
 void AssemblyGrasp::check() const {

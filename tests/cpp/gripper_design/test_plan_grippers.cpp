@@ -1,0 +1,214 @@
+// The whole job from structs: parts and an order in, grippers out, against what can be worked out by hand.
+#include "mmgrasp/gripper_design/plan_grippers.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "gripper_design/simple_parts.hpp"
+#include "mmgrasp/core/error.hpp"
+#include "mmgrasp/gripper_design/rehearse_operation.hpp"
+
+namespace mmgrasp {
+namespace {
+
+using test::at;
+using test::block;
+using test::turned;
+
+const std::vector<GripperActuator> kChuck{{"chuck", 3, 0.016}};
+
+/// A peg on a foot stands out 20 mm over a ring of 20 mm in diameter and 12 mm in height that is put over it.
+std::vector<AssemblyOperation> ring_on_peg() {
+  AssemblyOperation o;
+  o.name = "ring";
+  o.active = {{"ring", turned({{0.005, 0}, {0.01, 0}, {0.01, 0.012}, {0.005, 0.012}}), at(0, 0, 0.008)}};
+  o.passive = {{"plate", block({0.06, 0.06, 0.005}), at(0, 0, -0.005)},
+               {"peg", turned({{0, 0}, {0.012, 0}, {0.012, 0.008}, {0.0049, 0.008}, {0.0049, 0.04}, {0, 0.04}})}};
+  o.motion = {at(0, 0, 0.045), at(0, 0, 0)};
+  return {o};
+}
+
+/// Planned once for the tests that look at it.
+const PlanGrippersResult& ring_plan() {
+  static const PlanGrippersResult plan = plan_grippers(ring_on_peg(), kChuck);
+  return plan;
+}
+
+TEST(PlanGrippers, ARingOnAPegGetsOneGripperThatWasRehearsed) {
+  const PlanGrippersResult& found = ring_plan();
+  ASSERT_EQ(found.outcome, Outcome::solved);
+  ASSERT_TRUE(found.set);
+  ASSERT_EQ(found.set->grippers.size(), 1u);
+  EXPECT_EQ(found.met, std::vector<std::string>{""});
+  const int taken = found.set->requirement_of_part[0];
+  EXPECT_NEAR(found.requirements[taken].opening, 0.02, 1e-4);
+  const Gripper& gripper = found.set->grippers[0];
+  EXPECT_EQ(gripper.fingers, 3);
+  EXPECT_LE(gripper.min_opening + 0.001, 0.02);
+  EXPECT_GE(gripper.max_opening - 0.001, 0.02);
+  // Held as deep as the ring is high, less half a millimetre; the peg's top is 31.5 mm over the tips there.
+  EXPECT_NEAR(found.grasps[taken].contact_length, 0.0115, 1e-4);
+  EXPECT_NEAR(found.requirements[taken].min_finger_length, 0.0315, 1e-4);
+  EXPECT_NEAR(gripper.finger_length, 0.0325, 1e-4);
+}
+
+TEST(PlanGrippers, DeepGraspsGiveWayWhereFingersAreShort) {
+  PlanGrippersOptions options;
+  options.longest_finger = 0.0315;  // 30.5 mm without the margin: 10 mm deep is the deepest
+  PlanGrippersResult found = plan_grippers(ring_on_peg(), kChuck, {}, options);
+  ASSERT_EQ(found.outcome, Outcome::solved);
+  EXPECT_NEAR(found.grasps[found.set->requirement_of_part[0]].contact_length, 0.010, 1e-9);
+  options.longest_finger = 0.0245;
+  found = plan_grippers(ring_on_peg(), kChuck, {}, options);
+  ASSERT_EQ(found.outcome, Outcome::solved);
+  EXPECT_NEAR(found.grasps[found.set->requirement_of_part[0]].contact_length, 0.003, 1e-9);
+}
+
+TEST(PlanGrippers, WhatWouldHelpHelps) {
+  PlanGrippersOptions options;
+  options.longest_finger = 0.02;
+  PlanGrippersResult found = plan_grippers(ring_on_peg(), kChuck, {}, options);
+  EXPECT_EQ(found.outcome, Outcome::not_found);  // other directions might do
+  ASSERT_EQ(found.missing.size(), 1u);
+  ASSERT_EQ(found.help, std::vector<std::string>{"ring: fingers of 24 mm would do"});  // 23 mm and the margin
+  options.longest_finger = 0.024;
+  EXPECT_EQ(plan_grippers(ring_on_peg(), kChuck, {}, options).outcome, Outcome::solved);
+
+  found = plan_grippers(ring_on_peg(), {{"jaws", 2, 0.02}});
+  ASSERT_EQ(found.outcome, Outcome::infeasible);
+  EXPECT_NE(found.missing[0].find("no actuator has 3 fingers"), std::string::npos) << found.missing[0];
+  ASSERT_EQ(found.help.size(), 1u);
+  EXPECT_EQ(found.help[0].substr(0, 42), "ring: a drive with 3 fingers, a stroke of ");
+  const double opening = std::stod(found.help[0].substr(found.help[0].find("up to ") + 6)) / 1000;
+  EXPECT_NEAR(opening, 0.021, 1e-4);
+  EXPECT_EQ(plan_grippers(ring_on_peg(), {{"jaws", 2, 0.02}, {"c", 3, 0.006, opening}}).outcome, Outcome::solved);
+  EXPECT_EQ(plan_grippers(ring_on_peg(), {{"c", 3, 0.006, opening - 0.0002}}).outcome, Outcome::infeasible);
+}
+
+TEST(PlanGrippers, FingersKeepOffSegmentsAndBoxes) {
+  std::vector<int> all;
+  for (const SegmentFate& f : ring_plan().fates) all.push_back(f.segment);
+  const PlanGrippersResult none = plan_grippers(ring_on_peg(), kChuck, {{"ring", all}});
+  EXPECT_EQ(none.outcome, Outcome::infeasible);
+  EXPECT_NE(none.missing.at(0).find("not to be touched"), std::string::npos);
+  // The ring's lower 5 mm: pads may come 7 mm deep, so of the depths 3, 10 and 11.5 mm the first is left.
+  KeepOffBox low{at(0, 0, 0.0025), {0.05, 0.05, 0.005}};
+  const PlanGrippersResult upper = plan_grippers(ring_on_peg(), kChuck, {{"ring", {}, {low}}});
+  ASSERT_EQ(upper.outcome, Outcome::solved);
+  for (const AssemblyGrasp& g : upper.grasps) {
+    const bool from_above = g.T_active_tool.linear()(2, 2) < 0;
+    EXPECT_TRUE(from_above);
+    EXPECT_NEAR(g.contact_length, 0.003, 1e-9);
+  }
+  KeepOffBox top{at(0, 0, 0.0115), {0.05, 0.05, 0.001}};  // whoever comes from above passes it
+  EXPECT_EQ(plan_grippers(ring_on_peg(), kChuck, {{"ring", {}, {top}}}).outcome, Outcome::not_found);
+  EXPECT_THROW(plan_grippers(ring_on_peg(), kChuck, {{"rings"}}), InvalidInput);
+  EXPECT_THROW(plan_grippers(ring_on_peg(), kChuck, {{"ring", {99}}}), InvalidInput);
+  EXPECT_THROW(plan_grippers(ring_on_peg(), kChuck, {{"ring", {}, {{at(1, 0, 0), {0.01, 0.01, 0.01}}}}}), InvalidInput);
+}
+
+TEST(PlanGrippers, AnOperationThatEndsInAnotherPartIsNamed) {
+  std::vector<AssemblyOperation> order = ring_on_peg();
+  order[0].motion.back() = at(0, 0, -0.004);  // 4 mm into the peg's foot
+  PlanGrippersResult found = plan_grippers(order, kChuck);
+  EXPECT_EQ(found.outcome, Outcome::infeasible);
+  EXPECT_EQ(found.missing,
+            std::vector<std::string>{"ring: ring stands 4 mm deep in peg at its end (max_overlap is 0.5 mm)"});
+  PlanGrippersOptions options;
+  options.max_overlap = 0.005;
+  EXPECT_EQ(plan_grippers(order, kChuck, {}, options).missing.size(), 0u);
+  order = ring_on_peg();
+  order[0].motion.front() = at(0, 0, -0.1);
+  found = plan_grippers(order, kChuck);
+  EXPECT_EQ(found.outcome, Outcome::infeasible);
+  EXPECT_NE(found.missing.at(0).find("before its end"), std::string::npos) << found.missing[0];
+}
+
+TEST(PlanGrippers, WeightAndInsertionAreHeldOrRefused) {
+  std::vector<AssemblyOperation> order = ring_on_peg();
+  order[0].insertion_force = 20;
+  PlanGrippersOptions options;
+  options.holding.emplace();
+  const PlanGrippersResult firm = plan_grippers(order, kChuck, {}, options);
+  ASSERT_EQ(firm.outcome, Outcome::solved);
+  ASSERT_EQ(firm.holdings.size(), firm.requirements.size());
+  const HeldLoad& held = firm.holdings[firm.set->requirement_of_part[0]];
+  // Three fingers carry 0.5 * 50 N each; the hole pushes 20 N upwards, the weight pulls the other way.
+  const double weight = M_PI * (0.01 * 0.01 - 0.005 * 0.005) * 0.012 * 7850 * 9.81;
+  EXPECT_NEAR(held.safety, 3 * 25 / (20 - weight), 1e-3);
+  EXPECT_NEAR(held.insertion_moment, 0, 1e-4);
+  options.holding->grip.force = 5;
+  const PlanGrippersResult weak = plan_grippers(order, kChuck, {}, options);
+  EXPECT_EQ(weak.outcome, Outcome::not_found);
+  EXPECT_NE(weak.missing.at(0).find("pads slip"), std::string::npos);
+  EXPECT_TRUE(weak.help.empty());
+}
+
+TEST(PlanGrippers, SameAnswerAtAnyNumberOfThreads) {
+  PlanGrippersOptions one;
+  one.threads = 1;  // the other one used all
+  const PlanGrippersResult a = plan_grippers(ring_on_peg(), kChuck, {}, one);
+  const PlanGrippersResult& b = ring_plan();
+  ASSERT_EQ(a.requirements.size(), b.requirements.size());
+  for (std::size_t i = 0; i < a.grasps.size(); ++i) {
+    EXPECT_EQ(a.grasps[i].T_active_tool.matrix(), b.grasps[i].T_active_tool.matrix());
+    EXPECT_EQ(a.requirements[i].min_finger_length, b.requirements[i].min_finger_length);
+  }
+  EXPECT_EQ(a.set->requirement_of_part, b.set->requirement_of_part);
+}
+
+TEST(PlanGrippers, MistakesAreNamedBeforeAnyWork) {
+  std::vector<AssemblyOperation> twice = ring_on_peg();
+  twice.push_back(twice[0]);
+  EXPECT_THROW(plan_grippers(twice, kChuck), InvalidInput);
+  twice[1].name = "again";
+  try {
+    plan_grippers(twice, kChuck);
+    FAIL();
+  } catch (const InvalidInput& e) {
+    EXPECT_NE(std::string(e.what()).find("an order names a part once"), std::string::npos);
+  }
+  std::vector<AssemblyOperation> both = ring_on_peg();
+  both[0].passive.push_back(both[0].active[0]);
+  EXPECT_THROW(plan_grippers(both, kChuck), InvalidInput);
+  EXPECT_THROW(plan_grippers({}, kChuck), InvalidInput);
+  EXPECT_THROW(plan_grippers(ring_on_peg(), {}), InvalidInput);
+  std::vector<AssemblyOperation> no_way = ring_on_peg();
+  no_way[0].motion = {at(0, 0, 0)};
+  no_way[0].insertion_force = 1;
+  EXPECT_THROW(plan_grippers(no_way, kChuck), InvalidInput);
+  std::vector<AssemblyOperation> nowhere = ring_on_peg();
+  nowhere[0].motion[0].translation().x() = std::nan("");
+  EXPECT_THROW(plan_grippers(nowhere, kChuck), InvalidInput);
+  PlanGrippersOptions options;
+  options.max_overlap = std::nan("");
+  EXPECT_THROW(plan_grippers(ring_on_peg(), kChuck, {}, options), InvalidInput);
+}
+
+TEST(PlanGrippers, StopsWhenAsked) {
+  Monitor monitor;
+  std::set<std::string> stages;
+  monitor.progress = [&](const std::string& stage, double) { stages.insert(stage); };
+  EXPECT_EQ(plan_grippers(ring_on_peg(), kChuck, {}, {}, monitor).outcome, Outcome::solved);
+  for (const char* stage : {"segments", "grasps", "rehearsal"}) EXPECT_EQ(stages.count(stage), 1u) << stage;
+  monitor.progress = [&](const std::string& stage, double) {
+    if (stage == "grasps") monitor.stop.stop();
+  };
+  const PlanGrippersResult stopped = plan_grippers(ring_on_peg(), kChuck, {}, {}, monitor);
+  EXPECT_EQ(stopped.outcome, Outcome::stopped);
+  EXPECT_FALSE(stopped.set);
+}
+
+TEST(RehearseOperation, MeetsWhatTooShortFingersWould) {
+  const std::vector<AssemblyOperation> order = ring_on_peg();
+  const PlanGrippersResult& found = ring_plan();
+  const AssemblyGrasp& grasp = found.grasps[found.set->requirement_of_part[0]];
+  Gripper gripper = found.set->grippers[0];
+  EXPECT_EQ(rehearse_operation(gripper, grasp, order[0]), "");
+  gripper.finger_length = found.requirements[found.set->requirement_of_part[0]].min_finger_length - 0.001;
+  EXPECT_EQ(rehearse_operation(gripper, grasp, order[0]), "base meets peg during the motion");
+}
+
+}  // namespace
+}  // namespace mmgrasp

@@ -35,13 +35,13 @@ def segmented(
 
 @pytest.mark.slow
 def test_faces_of_composed_parts(tmp_path: Path) -> None:
-    """Every kind of part with and without noise; threads, fillets, holes and bores among them. All 50: benchmarks/gripper_design/run.py."""
+    """Every kind of part with and without noise; threads, fillets, holes and bores among them. Each part at least 95 %; all 50: benchmarks/gripper_design/run.py."""
     shares = {}
     for k, (part, noise) in enumerate(composed_parts(20)):
         _, truth, found = segmented(part, noise, k, tmp_path)
         shares[f"{k} {part.name}"] = faces_right(truth, found.labels)
     worst = sorted(shares.items(), key=lambda item: item[1])[:5]
-    assert np.mean(list(shares.values())) >= 0.95, worst
+    assert worst[0][1] >= 0.95, worst
 
 
 @pytest.mark.slow

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <unordered_map>
 
 namespace mmgrasp::detail {
@@ -71,9 +72,26 @@ bool cut_edges(FaceGraph& graph, double longest) {
   return !middles.empty();
 }
 
+/// The length down to which edges, longest first, may be cut in one pass so that no more than `most` faces come of it:
+/// each cut makes one face of each face beside it more. At least `longest`.
+double affordable_length(const FaceGraph& graph, double longest, std::size_t most) {
+  std::vector<double> sides;
+  for (const Face& v : graph.faces) {
+    for (int k = 0; k < 3; ++k) {
+      const double length = (graph.vertices[v[k]] - graph.vertices[v[(k + 1) % 3]]).norm();
+      if (length > longest) sides.push_back(length);
+    }
+  }
+  const std::size_t room = most > graph.faces.size() ? most - graph.faces.size() : 0;
+  if (sides.size() <= room) return longest;
+  const auto last = sides.begin() + static_cast<std::ptrdiff_t>(room);
+  std::nth_element(sides.begin(), last, sides.end(), std::greater<>());
+  return *last;
+}
+
 }  // namespace
 
-void FaceGraph::measure() {
+void FaceGraph::measure(const std::vector<Vector3d>& known) {
   const std::size_t n = faces.size();
   centres.resize(n);
   normals.resize(n);
@@ -88,6 +106,7 @@ void FaceGraph::measure() {
     const Vector3d cross = (vertices[v[1]] - vertices[v[0]]).cross(vertices[v[2]] - vertices[v[0]]);
     const double twice = cross.norm();
     normals[f] = twice > 0 ? Vector3d(cross / twice) : Vector3d::Zero();
+    if (!known.empty() && !known[parents[f]].isZero()) normals[f] = known[parents[f]];
     areas[f] = twice / 2;
     area += areas[f];
     for (int k = 0; k < 3; ++k) {
@@ -103,8 +122,8 @@ void FaceGraph::measure() {
     const double sine = normals[a.face].cross(normals[b.face]).norm();
     const double angle = std::atan2(sine, cosine);
     // The neighbour's far corner lies below the face's plane where the solid is convex.
-    const Vector3d beyond = centres[b.face] - vertices[a.low];
-    const Vector3d behind = centres[a.face] - vertices[a.low];
+    const Vector3d middle = 0.5 * (vertices[a.low] + vertices[a.high]);
+    const Vector3d beyond = centres[b.face] - middle, behind = centres[a.face] - middle;
     const bool crease = normals[a.face].dot(beyond) + normals[b.face].dot(behind) > 0;
     borders.push_back(
         {a.face, b.face, (vertices[a.low] - vertices[a.high]).norm(), crease ? -angle : angle, {a.low, a.high}});
@@ -131,7 +150,8 @@ TriangleMesh FaceGraph::mesh() const {
   return out;
 }
 
-FaceGraph refined_faces(const TriangleMesh& mesh, double longest, std::size_t most) {
+FaceGraph refined_faces(const TriangleMesh& mesh, double longest, std::size_t most,
+                        const std::vector<Vector3d>& known_normals) {
   FaceGraph graph;
   graph.vertices = mesh.vertices;
   graph.faces = mesh.triangles;
@@ -146,10 +166,12 @@ FaceGraph refined_faces(const TriangleMesh& mesh, double longest, std::size_t mo
   }
   while (reach > longest) {
     reach = std::max(longest, reach / 2);
-    while (graph.faces.size() < most && cut_edges(graph, reach)) continue;
-    if (graph.faces.size() >= most) break;
+    while (true) {
+      const double cut = std::max(reach, affordable_length(graph, reach, most));
+      if (!cut_edges(graph, cut)) break;
+    }
   }
-  graph.measure();
+  graph.measure(known_normals);
   return graph;
 }
 

@@ -30,13 +30,15 @@ struct FaceGraph {
   int other(int border, int face) const {
     return borders[border].first == face ? borders[border].second : borders[border].first;
   }
-  /// Computes everything but vertices, faces and parents anew.
-  void measure();
+  /// Computes everything but vertices, faces and parents anew. `known`: normals of the mesh's faces where they are
+  /// known better than by their corners, else zero; none: of no face.
+  void measure(const std::vector<Eigen::Vector3d>& known = {});
   TriangleMesh mesh() const;
 };
 
-/// The faces of the mesh, cut at the middles of all edges longer than `longest` [m], again and again, as long as there
-/// are fewer than `most` faces.
-FaceGraph refined_faces(const TriangleMesh& mesh, double longest, std::size_t most);
+/// The faces of the mesh, cut at the middles of all edges longer than `longest` [m], again and again, the longest
+/// first, until there are `most` faces. `known_normals`: as in FaceGraph::measure().
+FaceGraph refined_faces(const TriangleMesh& mesh, double longest, std::size_t most,
+                        const std::vector<Eigen::Vector3d>& known_normals = {});
 
 }  // namespace mmgrasp::detail

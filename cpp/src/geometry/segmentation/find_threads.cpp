@@ -39,6 +39,9 @@ constexpr std::size_t kMostChains = 12;
 /// Depth of a thread from root to crest, in pitches; metric threads have 0.61, square ones 0.5.
 constexpr double kDeepest = 1.0;
 
+/// Noise moves vertices between the ends of a thread out of it by up to so many times what they may be off elsewhere.
+constexpr double kLoose = 3;
+
 struct Helix {
   Vector3d axis = Vector3d::UnitZ(), point = Vector3d::Zero();
   double pitch_per_radian = 0;  ///< Along the axis [m/rad].
@@ -291,15 +294,17 @@ std::optional<ScrewThread> thread_around(const FaceGraph& graph, const Helix& he
   const auto faces_between = [&](double low, double high) {
     std::vector<int> faces;
     for (int f = 0; f < graph.size(); ++f) {
+      double off = 0;  // how far it reaches out of the thread's radii
       bool inside = true, beyond = false, at_root = true;
       for (const int v : graph.faces[f]) {
         const Place at = place_at(helix, graph.vertices[v]);
-        inside = inside && at.height > heights.low - 0.75 * pitch && at.height < heights.high + 0.75 * pitch &&
-                 at.radius >= low - slack && at.radius <= high + slack;
+        inside = inside && at.height > heights.low - 0.75 * pitch && at.height < heights.high + 0.75 * pitch;
+        off = std::max({off, low - at.radius, at.radius - high});
         beyond = beyond || at.height < heights.low || at.height > heights.high;
         at_root = at_root && std::abs(at.radius - root) < slack;
       }
-      if (!inside) continue;
+      // Between the ends of the root there is nothing but the thread, whose noise may be as large as its faces.
+      if (!inside || off > (beyond ? slack : kLoose * slack)) continue;
       // Past the ends of the root lie the shaft that the thread ends on and the face of a head or shoulder.
       if (beyond && (at_root || std::abs(graph.normals[f].dot(helix.axis)) > kAcross)) continue;
       faces.push_back(f);
@@ -401,6 +406,21 @@ void smooth_thread(const ScrewThread& thread, TriangleMesh& mesh) {
       if (radial.norm() > 0) mesh.vertices[v] = point + up + thread.crest_radius * radial.normalized();
     }
   }
+}
+
+std::vector<Vector3d> smoothed_normals(const TriangleMesh& mesh, const std::vector<ScrewThread>& threads) {
+  std::vector<Vector3d> out(mesh.triangles.size(), Vector3d::Zero());
+  for (const ScrewThread& thread : threads) {
+    const Vector3d axis = thread.T_mesh_thread.linear().col(2), point = thread.T_mesh_thread.translation();
+    const double outward = is_external(thread) ? 1 : -1;
+    for (const int f : thread.faces) {
+      const auto& t = mesh.triangles[f];
+      const Vector3d d = (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3 - point;
+      const Vector3d radial = d - d.dot(axis) * axis;
+      if (radial.norm() > 0) out[f] = outward * radial.normalized();
+    }
+  }
+  return out;
 }
 
 }  // namespace mmgrasp::detail

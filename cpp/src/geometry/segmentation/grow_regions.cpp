@@ -65,4 +65,17 @@ void grow_regions(const FaceGraph& graph, const std::vector<char>& open, std::ve
   }
 }
 
+void dissolve_islands(const FaceGraph& graph, double least_area, std::vector<int>& labels) {
+  const std::vector<char> all(graph.faces.size(), 1);
+  std::vector<char> same(graph.borders.size());
+  for (std::size_t k = 0; k < same.size(); ++k) {
+    same[k] = labels[graph.borders[k].first] == labels[graph.borders[k].second];
+  }
+  const std::vector<int> pieces = connected_regions(graph, all, same, least_area);
+  for (std::size_t f = 0; f < labels.size(); ++f) {
+    if (pieces[f] < 0) labels[f] = -1;
+  }
+  grow_regions(graph, all, labels);
+}
+
 }  // namespace mmgrasp::detail

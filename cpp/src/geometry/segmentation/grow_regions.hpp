@@ -15,4 +15,7 @@ std::vector<int> connected_regions(const FaceGraph& graph, const std::vector<cha
 /// from the least bend up, so that regions meet in the creases.
 void grow_regions(const FaceGraph& graph, const std::vector<char>& open, std::vector<int>& labels);
 
+/// Gives pieces of a region that lie apart and are smaller than `least_area` [m^2] to the regions around them.
+void dissolve_islands(const FaceGraph& graph, double least_area, std::vector<int>& labels);
+
 }  // namespace mmgrasp::detail

@@ -5,6 +5,7 @@
 
 #include "geometry/segmentation/alpha_expansion.hpp"
 #include "geometry/segmentation/grow_regions.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/geometry/ray_caster.hpp"
 
 namespace mmgrasp::detail {
@@ -15,6 +16,9 @@ constexpr double kOffset = 1e-6;
 /// What a border costs beside faces that disagree with their wall's other side: its length times the mesh's size by
 /// this, against their area.
 constexpr double kSmoothing = 0.02;
+/// So much more a border costs in an edge that bends outwards by a right angle: the sides of a groove belong to the
+/// walls that they meet there, though a ray through them may leave the solid in the next body but one.
+constexpr double kOutwardEdge = 3;
 /// More regions would make the cuts slow; their inner walls then grow from their borders alone.
 constexpr int kMostRegions = 64;
 
@@ -66,7 +70,8 @@ void label_inner_walls(const FaceGraph& graph, const InnerWalls& walls, int coun
     const double scale = kSmoothing * std::sqrt(graph.area);
     for (const FaceBorder& border : graph.borders) {
       const int a = node[border.first], b = node[border.second];
-      const double cost = scale * border.length;
+      const double outward = std::clamp(border.bend / (kPi / 2), 0.0, 1.0);
+      const double cost = scale * (1 + kOutwardEdge * outward) * border.length;
       if (a >= 0 && b >= 0) {
         links.push_back({a, b, cost});
       } else if ((a >= 0) != (b >= 0)) {

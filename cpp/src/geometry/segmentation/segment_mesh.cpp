@@ -43,14 +43,16 @@ double longest_edge(const TriangleMesh& mesh, double diagonal, const MeshSegment
 }
 
 /// Regions of the cut faces; each step reads what the one before found.
-std::vector<int> find_regions(const FaceGraph& graph, const std::vector<int>& clusters, double diagonal,
+std::vector<int> find_regions(const FaceGraph& graph, const std::vector<int>& clusters,
+                              const std::vector<char>& on_bolt, double diagonal,
                               const MeshSegmentationOptions& options) {
   const double narrowest = options.min_size * diagonal;
   const int threads = options.diameter.threads;
   const std::vector<double> bends = detail::inward_bends(graph, narrowest, threads);
-  const detail::InnerWalls walls = detail::find_inner_walls(graph, threads);
+  detail::InnerWalls walls = detail::find_inner_walls(graph, threads);
   std::vector<char> outer(graph.faces.size()), seed(graph.faces.size()), passable(graph.borders.size());
   for (int f = 0; f < graph.size(); ++f) {
+    if (on_bolt[graph.parents[f]]) walls.inner[f] = 0;  // smoothed threads may lie in folds
     outer[f] = !walls.inner[f];
     seed[f] = outer[f] && bends[f] < options.crease;
   }
@@ -62,6 +64,7 @@ std::vector<int> find_regions(const FaceGraph& graph, const std::vector<int>& cl
   detail::grow_regions(graph, outer, labels);
   const int count = detail::join_regions(graph, narrowest, options.convexity, labels);
   detail::label_inner_walls(graph, walls, count, labels);
+  detail::dissolve_islands(graph, narrowest * narrowest, labels);
   detail::join_regions(graph, narrowest, options.convexity, labels);
   return labels;
 }
@@ -176,8 +179,8 @@ MeshSegmentation segment_mesh(const TriangleMesh& mesh, const MeshSegmentationOp
     out.threads = detail::find_threads(smooth);
     for (const ScrewThread& thread : out.threads) detail::smooth_thread(thread, smooth);
   }
-  const std::size_t most = std::max<std::size_t>(4 * options.faces, mesh.triangles.size());
-  const FaceGraph graph = detail::refined_faces(smooth, longest, most);
+  const std::size_t most = std::max<std::size_t>(2 * options.faces, mesh.triangles.size());
+  const FaceGraph graph = detail::refined_faces(smooth, longest, most, detail::smoothed_normals(smooth, out.threads));
   const std::vector<double> diameters = shape_diameters(graph.mesh(), options.diameter, monitor);
   if (monitor.stopped()) return stopped();
   monitor.report("clusters", 0);
@@ -186,7 +189,11 @@ MeshSegmentation segment_mesh(const TriangleMesh& mesh, const MeshSegmentationOp
   out.clusters = clusters.count;
   if (monitor.stopped()) return stopped();
   monitor.report("segments", 0);
-  std::vector<int> labels = find_regions(graph, clusters.labels, diagonal, options);
+  std::vector<char> on_bolt(mesh.triangles.size(), 0);
+  for (const ScrewThread& thread : out.threads) {
+    for (const int f : thread.faces) on_bolt[f] = detail::is_external(thread);
+  }
+  std::vector<int> labels = find_regions(graph, clusters.labels, on_bolt, diagonal, options);
   if (monitor.stopped()) return stopped();
   for (int& label : labels) label = std::max(label, 0);
   gather_pieces(graph, labels, diameters, mesh.triangles.size(), out);

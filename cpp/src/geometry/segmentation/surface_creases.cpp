@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/parallel.hpp"
 
 namespace mmgrasp::detail {
@@ -13,9 +14,11 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-constexpr std::size_t kBatch = 256;
+constexpr std::size_t kBatch = 64;
 /// Edges that bend inwards by less make no crease, however many there are within the reach [rad].
 constexpr double kSlight = 0.02;
+/// Faces closer to each other than this share of the reach see the same creases.
+constexpr double kSameShare = 0.125;
 
 /// Whether a place is near an edge that bends inwards: a grid of cells as wide as the reach (and half an edge).
 class NearCreases {
@@ -38,56 +41,73 @@ class NearCreases {
   std::set<std::array<long, 3>> cells_;
 };
 
-/// Visits the faces around one, over edges, as far as their centres lie within the reach.
+/// Gathers the faces around one, over edges, as far as their centres lie within the reach.
 struct Walk {
-  explicit Walk(const FaceGraph& graph) : seen(graph.faces.size(), -1), edges_seen(graph.borders.size(), -1) {}
-  std::vector<int> seen, edges_seen, queue;
-};
+  explicit Walk(const FaceGraph& graph) : seen(graph.faces.size(), -1) {}
+  std::vector<int> seen, faces;
 
-double bend_around(const FaceGraph& graph, int face, double reach, Walk& walk) {
-  Matrix3d tensor = Matrix3d::Zero();
-  walk.queue.assign(1, face);
-  walk.seen[face] = face;
-  for (std::size_t k = 0; k < walk.queue.size(); ++k) {
-    const int f = walk.queue[k];
-    for (int i = graph.first_border[f]; i < graph.first_border[f + 1]; ++i) {
-      const FaceBorder& border = graph.borders[graph.border_of[i]];
-      const int other = graph.other(graph.border_of[i], f);
-      const bool inside = (graph.centres[other] - graph.centres[face]).norm() <= reach;
-      if (walk.edges_seen[graph.border_of[i]] != face) {
-        walk.edges_seen[graph.border_of[i]] = face;
-        // The part of the edge within the sphere.
-        const Vector3d &a = graph.vertices[border.vertices[0]], &b = graph.vertices[border.vertices[1]];
-        const Vector3d along = (b - a) / std::max(border.length, 1e-300);
-        const double foot = (graph.centres[face] - a).dot(along);
-        const double off = (graph.centres[face] - a - foot * along).squaredNorm();
-        const double half = std::sqrt(std::max(0.0, reach * reach - off));
-        const double length = std::min(border.length, foot + half) - std::max(0.0, foot - half);
-        if (length > 0) tensor += (border.bend * length / (2 * reach)) * along * along.transpose();
+  void around(const FaceGraph& graph, int face, double reach) {
+    faces.assign(1, face);
+    seen[face] = face;
+    for (std::size_t k = 0; k < faces.size(); ++k) {
+      const int f = faces[k];
+      for (int i = graph.first_border[f]; i < graph.first_border[f + 1]; ++i) {
+        const int other = graph.other(graph.border_of[i], f);
+        if (seen[other] == face || (graph.centres[other] - graph.centres[face]).squaredNorm() > reach * reach) continue;
+        seen[other] = face;
+        faces.push_back(other);
       }
-      if (!inside || walk.seen[other] == face) continue;
-      walk.seen[other] = face;
-      walk.queue.push_back(other);
     }
   }
-  const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(tensor, Eigen::EigenvaluesOnly);
-  return -solver.eigenvalues()[0];
+};
+
+/// Covariance of normal and place over the area around the face. Two half discs of radius r that meet at an angle have
+/// sin(angle) 2 r / (3 pi) across the crease, negative where it bends inwards; faces without area, whose normals are
+/// chance, do not count.
+double bend_around(const FaceGraph& graph, int face, double reach, Walk& walk) {
+  walk.around(graph, face, reach);
+  double area = 0;
+  Vector3d place = Vector3d::Zero(), normal = Vector3d::Zero();
+  Matrix3d product = Matrix3d::Zero();
+  for (const int f : walk.faces) {
+    const Vector3d x = graph.centres[f] - graph.centres[face], n = graph.areas[f] * graph.normals[f];
+    area += graph.areas[f];
+    place += graph.areas[f] * x;
+    normal += n;
+    product += n * x.transpose();
+  }
+  if (!(area > 0)) return 0;
+  const Matrix3d covariance = product / area - normal * place.transpose() / (area * area);
+  const Matrix3d tensor = (covariance + covariance.transpose()) / 2;
+  const double least = Eigen::SelfAdjointEigenSolver<Matrix3d>(tensor, Eigen::EigenvaluesOnly).eigenvalues()[0];
+  return std::asin(std::clamp(-least * 3 * kPi / (2 * reach), 0.0, 1.0));
 }
 
 }  // namespace
 
 std::vector<double> inward_bends(const FaceGraph& graph, double reach, int threads) {
   std::vector<double> out(graph.size(), 0);
-  const std::size_t batches = (out.size() + kBatch - 1) / kBatch;
   const NearCreases creases(graph, reach);
-  std::vector<Walk> walks(resolve_threads(threads), Walk(graph));
-  parallel_for(batches, threads, [&](std::size_t batch, int worker) {
-    const std::size_t end = std::min(out.size(), (batch + 1) * kBatch);
-    for (std::size_t f = batch * kBatch; f < end; ++f) {
-      if (!creases.near(graph.centres[f])) continue;
-      out[f] = bend_around(graph, static_cast<int>(f), reach, walks[worker]);
+  // Neighbours much closer than the reach see the same creases: one of them is asked for all.
+  std::vector<int> asked_for(graph.size(), -1), asked;
+  Walk close(graph);
+  for (int f = 0; f < graph.size(); ++f) {
+    if (asked_for[f] >= 0 || !creases.near(graph.centres[f])) continue;
+    close.around(graph, f, kSameShare * reach);
+    for (const int other : close.faces) {
+      if (asked_for[other] < 0) asked_for[other] = f;
     }
+    asked.push_back(f);
+  }
+  std::vector<Walk> walks(resolve_threads(threads), Walk(graph));
+  parallel_for((asked.size() + kBatch - 1) / kBatch, threads, [&](std::size_t batch, int worker) {
+    const std::size_t end = std::min(asked.size(), (batch + 1) * kBatch);
+    for (std::size_t k = batch * kBatch; k < end; ++k)
+      out[asked[k]] = bend_around(graph, asked[k], reach, walks[worker]);
   });
+  for (int f = 0; f < graph.size(); ++f) {
+    if (asked_for[f] >= 0) out[f] = out[asked_for[f]];
+  }
   return out;
 }
 

@@ -6,10 +6,10 @@
 
 namespace mmgrasp::detail {
 
-/// How far the surface bends inwards around each face, over a distance of `reach` [m] to every side [rad]: the largest
-/// eigenvalue, its sign turned, of the mean curvature tensor of the edges there (Cohen-Steiner and Morvan 2003), times
-/// the width. A sharp crease and a rounded one of the same angle give the same as long as the rounding is narrower than
-/// the reach; what noise bends to and fro cancels.
+/// How far the surface bends inwards around each face, over a distance of `reach` [m] to every side [rad], from the
+/// covariance of the normals and places of the faces there by area: the angle of two half discs that have it. A sharp
+/// crease and a rounded one give the same as long as the rounding is narrower than the reach; noise cancels, and faces
+/// without area, whose normals are chance, do not count.
 std::vector<double> inward_bends(const FaceGraph& graph, double reach, int threads);
 
 }  // namespace mmgrasp::detail

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -41,7 +42,13 @@ def test_wrong_input_is_refused() -> None:
 
 
 def test_deviations_are_covered_and_the_probability_is_a_normal_distributions() -> None:
-    hand = {"tool_speed": 0.3, "object_width": 0.05, "opening": 0.10, "planned_depth": 0.06, "max_push": 1.0}
+    hand: dict[str, Any] = {
+        "tool_speed": 0.3,
+        "object_width": 0.05,
+        "opening": 0.10,
+        "planned_depth": 0.06,
+        "max_push": 1.0,
+    }
     found = mg.grasping.push_grasp(along_deviation=0.002, lateral_deviation=0.01, sigmas=2.0, **hand)
     # Both errors are far from every limit but the fingers' free space of 25 mm on either side.
     assert found.push.covered_sigmas == pytest.approx(2.5)

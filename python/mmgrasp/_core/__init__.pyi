@@ -10,7 +10,7 @@ import numpy.typing
 import os
 import typing
 from . import verify
-__all__: list[str] = ['AssemblyGrasp', 'AssemblyOperation', 'BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'BeamExtreme', 'BeamFrame', 'BeamMaterial', 'BeamMember', 'BeamSection', 'BeamState', 'BeamSupport', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactArea', 'ContactPairProvenance', 'ContactPatch', 'CuboidFit', 'Cylinder', 'DepthCamera', 'DepthImage', 'DepthNoise', 'DerivativeFreeResult', 'DistanceField', 'DistanceResult', 'DrawnSuccess', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'Facet', 'FeasibleGrasp', 'FingerGrip', 'FingerLengthRange', 'FittedCuboid', 'FittedPrimitive', 'FrameRegistration', 'Grasp', 'GraspHolding', 'GraspOptimum', 'GraspRating', 'GraspReport', 'GraspSuccess', 'GraspSynthesis', 'GraspWidth', 'Graspability', 'GridDistanceField', 'Gripper', 'GripperActuator', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'HeldLoad', 'HoldingRequirement', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'IntegrationReport', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'KeepOff', 'LineGrasp', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'ManipulationStats', 'Mesh', 'MeshDistanceField', 'MeshSegment', 'MeshSegmentation', 'MinimalGrippersResult', 'MotionResult', 'MotionStats', 'NextView', 'NlpResult', 'NodeLoad', 'NonlinearProblem', 'ObjectPathEvaluator', 'ObjectPathProblem', 'ObjectPathResult', 'ObjectRegions', 'ObjectSegmentation', 'Obstruction', 'OccupancyMap', 'OccupancyReport', 'OperationLoad', 'OperationOverlap', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'PairwiseWeights', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedMesh', 'PlacedPart', 'PlanGrippersResult', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'ProbabilisticSdf', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotMotion', 'RobotSource', 'ScrewThread', 'SdfHits', 'SearchTree', 'SegmentFate', 'SegmentRequirement', 'SegmentedObject', 'SegmentedPart', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'SupportedFrame', 'SupportingPlane', 'ToolRegion', 'TourResult', 'Tray', 'ViewCandidate', 'Voxels', 'WholeBodyProgram', 'WholeBodyTrajectory', 'World', 'beam_frame', 'cache_folder', 'camera_view_objective', 'centric_grasps', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'copper', 'cover_from_intersections', 'default_grasp_search', 'derivative_free_solver_names', 'drive_arc', 'drive_by_program', 'eigengrasp_hand', 'evaluate_graspability', 'find_package', 'finger_length_range', 'fit_cuboids', 'fit_primitives', 'flat_contact', 'follow_object_path', 'free_gripper', 'grasp_holding', 'grasp_search_names', 'graspability_map', 'hand_masks', 'held_load', 'inscribed_circle', 'jaw_grasps', 'joint_limit_objective', 'joint_velocity', 'line_contact', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimal_grippers', 'minimize_derivative_free', 'next_view', 'nlp_solver_names', 'operation_load', 'operation_overlap', 'optimised_order', 'optimize_grasp', 'paired_order', 'pairwise_weights', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_grippers', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stop_picks', 'plan_stops_exact', 'plan_straight_line', 'planar_facets', 'planner_names', 'platform_velocity', 'population_search_names', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'preferred_grippers', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'rectangular_section', 'register_frame', 'rehearse_operation', 'render_depth', 'resting_poses', 'robust_intersections', 'round_section', 'route_lengths', 'run_policy', 'sample_grasps', 'segment_depth_image', 'segment_grasps', 'segment_mesh', 'segment_objects', 'self_distance_objective', 'shape_diameters', 'share_headings', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'soft_finger_torque', 'solve_nonlinear', 'solve_set_cover', 'synthesize_grasps', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
+__all__: list[str] = ['AssemblyGrasp', 'AssemblyOperation', 'BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'BeamExtreme', 'BeamFrame', 'BeamMaterial', 'BeamMember', 'BeamSection', 'BeamState', 'BeamSupport', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactArea', 'ContactPairProvenance', 'ContactPatch', 'CuboidFit', 'Cylinder', 'DepthCamera', 'DepthImage', 'DepthNoise', 'DerivativeFreeResult', 'DistanceField', 'DistanceResult', 'DrawnSuccess', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'Facet', 'FeasibleGrasp', 'FingerGrip', 'FingerLengthRange', 'FittedCuboid', 'FittedPrimitive', 'FrameRegistration', 'Grasp', 'GraspHolding', 'GraspOptimum', 'GraspRating', 'GraspReport', 'GraspSuccess', 'GraspSynthesis', 'GraspWidth', 'Graspability', 'GridDistanceField', 'Gripper', 'GripperActuator', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'HeldLoad', 'HoldingRequirement', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'IntegrationReport', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'KeepOff', 'LineGrasp', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'ManipulationStats', 'Mesh', 'MeshDistanceField', 'MeshSegment', 'MeshSegmentation', 'MinimalGrippersResult', 'MotionResult', 'MotionStats', 'NextView', 'NlpResult', 'NodeLoad', 'NonlinearProblem', 'ObjectPathEvaluator', 'ObjectPathProblem', 'ObjectPathResult', 'ObjectRegions', 'ObjectSegmentation', 'Obstruction', 'OccupancyMap', 'OccupancyReport', 'OperationLoad', 'OperationOverlap', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'PairwiseWeights', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedMesh', 'PlacedPart', 'PlanGrippersResult', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'ProbabilisticSdf', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotMotion', 'RobotSource', 'ScrewThread', 'SdfHits', 'SearchTree', 'SegmentFate', 'SegmentRequirement', 'SegmentedObject', 'SegmentedPart', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'SupportedFrame', 'SupportingPlane', 'ToolRegion', 'TourResult', 'Tray', 'ViewCandidate', 'Voxels', 'WholeBodyProgram', 'WholeBodyTrajectory', 'World', 'beam_frame', 'cache_folder', 'camera_view_objective', 'centric_grasps', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'copper', 'cover_from_intersections', 'default_grasp_search', 'derivative_free_solver_names', 'drive_arc', 'drive_by_program', 'eigengrasp_hand', 'evaluate_graspability', 'find_package', 'finger_length_range', 'fit_cuboids', 'fit_primitives', 'flat_contact', 'follow_object_path', 'free_gripper', 'grasp_holding', 'grasp_search_names', 'graspability_map', 'hand_masks', 'held_load', 'inscribed_circle', 'jaw_grasps', 'joint_limit_objective', 'joint_velocity', 'line_contact', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimal_grippers', 'minimize_derivative_free', 'next_view', 'nlp_solver_names', 'operation_load', 'operation_overlap', 'optimised_order', 'optimize_grasp', 'paired_order', 'pairwise_weights', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_grippers', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stop_picks', 'plan_stops_exact', 'plan_straight_line', 'planar_facets', 'planner_names', 'platform_velocity', 'population_search_names', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'preferred_grippers', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'rectangular_section', 'register_frame', 'rehearse_operation', 'render_depth', 'resting_poses', 'robust_intersections', 'round_section', 'route_lengths', 'run_policy', 'sample_grasps', 'segment_depth_image', 'segment_grasps', 'segment_mesh', 'segment_objects', 'self_distance_objective', 'shape_diameters', 'share_headings', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'soft_finger_torque', 'solve_nonlinear', 'solve_set_cover', 'synthesize_grasps', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs', 'write_plan']
 class Error(Exception):
     """
     Base of all errors of mmgrasp.
@@ -2739,6 +2739,11 @@ class ClosingOutcome:
         The same when both fingers touch, were the object not pushed [m].
         """
     @property
+    def covered_sigmas(self) -> float:
+        """
+        Errors of so many standard deviations along and aside together are survived; infinite where these are 0, negative where nothing is held.
+        """
+    @property
     def farther_tolerance(self) -> float:
         """
         It may stand this much farther [m].
@@ -2757,6 +2762,11 @@ class ClosingOutcome:
     def nearer_tolerance(self) -> float:
         """
         It may stand this much nearer [m].
+        """
+    @property
+    def probability(self) -> float:
+        """
+        That the object is held as planned, its errors independent and normally distributed.
         """
     @property
     def pushed(self) -> float:
@@ -3674,7 +3684,9 @@ class DriveByTask:
     What rests on something counts as 1 mm higher once it is attached.
     
     push: a gripper that closes while the hand moves on (P1 4.3): dict of push_grasp's keywords, approach (3,), an axis of
-    the tip's frame, and free_length [m], the straight way before the finger tips reach the object. T_world_tip is then
+    the tip's frame, free_length [m], the straight way before the finger tips reach the object, covariance (3, 3) [m^2]
+    of the object's position in the world, of which `sigmas` standard deviations are covered, and closing_direction (3,)
+    of the fingers in the tip's frame. T_world_tip is then
     the planned grasp; tolerance, free_axes, max_tool_speed and dwell are left out.
     """
     def __init__(self, T_world_tip: numpy.typing.ArrayLike, *, tolerance: numpy.typing.ArrayLike | None = None, free_axes: collections.abc.Sequence[str] = [], max_tool_speed: float | None = None, dwell: float = 0.0, object: str = '', push: dict[str, typing.Any] | None = None) -> None:
@@ -6795,6 +6807,8 @@ def _first_drive_by_guess(group: JointGroup, *, start: numpy.typing.ArrayLike, t
     """
     The guess of the first seed, for benchmarks against other optimisers; None when a task is out of reach. solve() takes it from there, judging included: whether it is solved, the duration, processor seconds that judging once more took, and iterations.
     """
+def _grasp_option_bounds() -> dict[str, typing.Any]:
+    ...
 def _grasp_option_table() -> dict[str, typing.Any]:
     ...
 def _grasp_search_option_table() -> dict[str, typing.Any]:
@@ -6811,6 +6825,8 @@ def _minimal_grippers_option_table() -> dict[str, typing.Any]:
     ...
 def _motion_option_table() -> dict[str, typing.Any]:
     ...
+def _object_path_option_bounds() -> dict[str, typing.Any]:
+    ...
 def _object_path_option_table() -> dict[str, typing.Any]:
     ...
 def _occupancy_option_table() -> dict[str, typing.Any]:
@@ -6824,6 +6840,8 @@ def _platform_option_table() -> dict[str, typing.Any]:
 def _population_option_table() -> dict[str, typing.Any]:
     ...
 def _push_option_table() -> dict[str, typing.Any]:
+    ...
+def _reach_option_bounds() -> dict[str, typing.Any]:
     ...
 def _reach_option_table() -> dict[str, typing.Any]:
     ...
@@ -6848,7 +6866,11 @@ def _segmentation_option_table() -> dict[str, typing.Any]:
     ...
 def _shape_diameter_option_table() -> dict[str, typing.Any]:
     ...
+def _supply_option_bounds() -> dict[str, typing.Any]:
+    ...
 def _supply_option_table() -> dict[str, typing.Any]:
+    ...
+def _synthesis_option_bounds() -> dict[str, typing.Any]:
     ...
 def _synthesis_option_table() -> dict[str, typing.Any]:
     ...
@@ -6890,7 +6912,7 @@ def cheapest_assignment(costs: numpy.typing.ArrayLike) -> list[int]:
     """
     A column of its own for each row of (n, n) so that the sum of costs is least.
     """
-def closing_outcome(start: float, *, opening: float = 0.1, closing_speed: float = 0.1, tool_speed: float = 0.3, finger_length: float = 0.12, object_width: float = 0.05, grip_depth: float = 0.02, planned_depth: float = 0.06, clearance: float = 0.0, max_push: float = 0.1, along_error: float = 0.0, lateral_error: float = 0.0) -> ClosingOutcome:
+def closing_outcome(start: float, *, opening: float = 0.1, closing_speed: float = 0.1, tool_speed: float = 0.3, finger_length: float = 0.12, object_width: float = 0.05, grip_depth: float = 0.02, planned_depth: float = 0.06, clearance: float = 0.0, max_push: float = 0.1, along_error: float = 0.0, lateral_error: float = 0.0, along_deviation: float = 0.0, lateral_deviation: float = 0.0, sigmas: float = 3.0) -> ClosingOutcome:
     """
     What beginning to close at an engagement [m] comes to.
     
@@ -6906,6 +6928,9 @@ def closing_outcome(start: float, *, opening: float = 0.1, closing_speed: float 
         max_push: float = 0.1  # how far the object may slide before the palm [m]
         along_error: float = 0.0  # the object may stand this much nearer or farther [m]
         lateral_error: float = 0.0  # and this much to either side [m]
+        along_deviation: float = 0.0  # standard deviation of the object's position along the approach [m]
+        lateral_deviation: float = 0.0  # the same along the closing direction [m]
+        sigmas: float = 3.0  # errors of this many deviations are covered
     """
 def compute_base_regions(problem: PartSupplyProblem, database: ReachDatabase, grid: BaseGrid, *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None) -> list[BaseRegion]:
     """
@@ -7496,7 +7521,7 @@ def preferred_grippers(requirements: collections.abc.Sequence[SegmentRequirement
         max_nodes: int = 20000  # of the search for fewest changes
         time_limit: float = 60.0  # wall-clock cap [s]
     """
-def push_grasp(*, hand: Hand | None = None, opening: float = 0.1, closing_speed: float = 0.1, tool_speed: float = 0.3, finger_length: float = 0.12, object_width: float = 0.05, grip_depth: float = 0.02, planned_depth: float = 0.06, clearance: float = 0.0, max_push: float = 0.1, along_error: float = 0.0, lateral_error: float = 0.0) -> PushGrasp:
+def push_grasp(*, hand: Hand | None = None, opening: float = 0.1, closing_speed: float = 0.1, tool_speed: float = 0.3, finger_length: float = 0.12, object_width: float = 0.05, grip_depth: float = 0.02, planned_depth: float = 0.06, clearance: float = 0.0, max_push: float = 0.1, along_error: float = 0.0, lateral_error: float = 0.0, along_deviation: float = 0.0, lateral_deviation: float = 0.0, sigmas: float = 3.0) -> PushGrasp:
     """
     When a hand that moves on may begin to close, and what error of the object's position it forgives (P1 4.3).
     Lengths are those of `hand` where no keyword gives them.
@@ -7513,6 +7538,9 @@ def push_grasp(*, hand: Hand | None = None, opening: float = 0.1, closing_speed:
         max_push: float = 0.1  # how far the object may slide before the palm [m]
         along_error: float = 0.0  # the object may stand this much nearer or farther [m]
         lateral_error: float = 0.0  # and this much to either side [m]
+        along_deviation: float = 0.0  # standard deviation of the object's position along the approach [m]
+        lateral_deviation: float = 0.0  # the same along the closing direction [m]
+        sigmas: float = 3.0  # errors of this many deviations are covered
     """
 def push_speed_limit(*, length: float, friction: float, restitution: float) -> float:
     """
@@ -7863,5 +7891,11 @@ def wheel_speeds(v: float, omega: float, wheel_separation: float) -> tuple[float
 def with_sampled_pairs(robot: Robot, *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None) -> Robot:
     """
     compute_disabled_pairs with default options, its result cached on disk under the robot's hash.
+    """
+def write_plan(problem: PartSupplyProblem, database: ReachDatabase, plan: PartSupplyPlan, path: str | os.PathLike[str], *, name: str = 'round', source: str = 'a program', closing_speed: float = 0.1) -> None:
+    """
+    Writes plan.json for a problem given as objects and the plan made with this database, so that `mmgrasp verify` and
+    `mmgrasp view` take it; `closing_speed` of the gripper [m/s]. InvalidInput for shapes that a plan cannot hold
+    (planes but for the floor, voxels, meshes without a file) and a plan of another problem.
     """
 __version__: str = '0.1.0'

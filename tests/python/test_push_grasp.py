@@ -36,7 +36,8 @@ def test_the_leap_limits_the_speed() -> None:
 def test_wrong_input_is_refused() -> None:
     with pytest.raises(mg.InvalidInput, match="did you mean tool_speed"):
         mg.grasping.push_grasp(tol_speed=1)  # type: ignore[call-arg]
-    for bad in ({"tool_speed": 0}, {"opening": 0.01}, {"grip_depth": 1.0}, {"max_push": -1}):
+    wrong: list[dict[str, Any]] = [{"tool_speed": 0}, {"opening": 0.01}, {"grip_depth": 1.0}, {"max_push": -1}]
+    for bad in wrong:
         with pytest.raises(mg.InvalidInput, match=next(iter(bad))):
             mg.grasping.push_grasp(**bad)
 
@@ -59,7 +60,7 @@ def test_deviations_are_covered_and_the_probability_is_a_normal_distributions() 
 
 
 def test_a_task_covers_the_covariance_of_the_objects_position() -> None:
-    push = {"tool_speed": 0.3, "object_width": 0.05, "opening": 0.10, "max_push": 0.3, "sigmas": 2.0}
+    push: dict[str, Any] = {"tool_speed": 0.3, "object_width": 0.05, "opening": 0.10, "max_push": 0.3, "sigmas": 2.0}
     turned = mg.pose([1, 2, 0.5], [0, 0, math.pi / 2])  # approach along y of the world, fingers close along x
     covariance = np.diag([0.01**2, 0.003**2, 1.0])
     task = mg.DriveByTask(turned, push={**push, "covariance": covariance})

@@ -1,9 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/random.hpp"
 #include "mmgrasp/plan/time_parameterization.hpp"
 #include "support/vec.hpp"
 
@@ -96,6 +98,47 @@ TEST(JerkLimits, StopsKeepThePathExactly) {
     EXPECT_LE(std::min(std::abs(q[1]), std::abs(q[0] - 1)), 1e-4);
   }
   expect_kept(motion, v, a, j);
+}
+
+/// The distance of the executed motion from the polyline.
+double farthest(const JointTrajectory& motion, const JointPath& path) {
+  double worst = 0;
+  for (int k = 0; k <= 4000; ++k) {
+    const VectorXd at = motion.at(motion.duration() * k / 4000);
+    double off = 1e9;
+    for (std::size_t i = 0; i + 1 < path.waypoints.size(); ++i) {
+      const VectorXd edge = path.waypoints[i + 1] - path.waypoints[i], q = at - path.waypoints[i];
+      off = std::min(off, (q - std::clamp(q.dot(edge) / edge.squaredNorm(), 0.0, 1.0) * edge).norm());
+    }
+    worst = std::max(worst, off);
+  }
+  return worst;
+}
+
+TEST(JerkLimits, RandomPathsAreKeptWithinTheDeviation) {
+  Rng rng(21);
+  for (int trial = 0; trial < 40; ++trial) {
+    const int joints = 2 + trial % 5, corners = 1 + trial % 4;
+    JointPath path{{VectorXd::Zero(joints)}};
+    for (int i = 0; i <= corners; ++i)
+      path.waypoints.push_back(path.waypoints.back() +
+                               rng.uniform(VectorXd::Constant(joints, -1), VectorXd::Constant(joints, 1)));
+    const VectorXd v = rng.uniform(VectorXd::Constant(joints, 0.5), VectorXd::Constant(joints, 2));
+    const VectorXd j = v * std::pow(10.0, rng.uniform(-0.5, 2));
+    TimingOptions options = with_jerk(j, trial % 7 == 0 ? 0 : rng.uniform(0.001, 0.05));
+    options.sample_period = trial % 3 == 0 ? 0.3 : 0.02;
+    const JointTrajectory motion = time_parameterize(path, v, 2 * v, options);
+    EXPECT_LE(farthest(motion, path), options.max_deviation + 1e-6) << trial;
+    EXPECT_EQ(motion.positions.back(), path.waypoints.back());
+  }
+}
+
+TEST(JerkLimits, ASquareIsNotLeft) {
+  const JointPath path{{vec({0, 0}), vec({1, 0}), vec({1, 1}), vec({0, 1})}};
+  const JointTrajectory motion = time_parameterize(path, vec({1, 1}), vec({2, 2}), with_jerk(vec({1, 1})));
+  EXPECT_LE(farthest(motion, path), 0.01 + 1e-6);
+  // Three moves of 1, each from rest to rest in the least time under the jerk limit alone, are what stops may take.
+  EXPECT_LE(motion.duration(), 3 * 4 * std::cbrt(1 / 2.0) * 1.25);
 }
 
 /// Round a square, with corners blended or stopped at.

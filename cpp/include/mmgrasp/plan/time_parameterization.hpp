@@ -17,7 +17,8 @@ struct MMGRASP_EXPORT TimingOptions {
   double max_deviation = 0.01;
   double sample_period = 0.02;  ///< Largest time between samples [s]; > 0. They are denser where accelerations jump.
   /// Jerk limit of each joint [rad/s^3]; > 0; empty: none. The motion is then the moving average of a faster one: it
-  /// stays on straight edges, rounds blended corners a little more, and takes the window's time longer.
+  /// stays on straight edges and takes the window's time longer. Corners that averaging would round by more than
+  /// `max_deviation` are passed on tighter arcs, or stopped at.
   Eigen::VectorXd jerk_limits;
   void check() const;
 };

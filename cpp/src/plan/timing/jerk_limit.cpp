@@ -39,6 +39,14 @@ class Cubics {
 
   const std::vector<double>& times() const { return times_; }
   double duration() const { return times_.back(); }
+  /// Ends of the waits of `wait` seconds: there the average over as long a window stands at the corner.
+  std::vector<double> ends_of_waits(double wait) const {
+    std::vector<double> ends;
+    for (std::size_t i = 0; i + 1 < times_.size(); ++i) {
+      if (times_[i + 1] - times_[i] > 0.5 * wait && positions_[i + 1] == positions_[i]) ends.push_back(times_[i + 1]);
+    }
+    return ends;
+  }
 
   /// The integral of the position (from the first one) up to `t`.
   Eigen::VectorXd integral(double t) const {
@@ -145,10 +153,12 @@ bool is_short(double window, double period) {
 }
 
 /// Times of samples from 0 to the average's end. Between the times at which an end of the window meets a sample, its
-/// jerk is linear: under a short window samples crowd around these times alone.
+/// jerk is linear: under a short window samples crowd around these times alone. A sample at each stop keeps the cubics
+/// from cutting its corner.
 std::vector<double> sample_times(const Cubics& motion, double window, double period) {
   const double duration = motion.duration() + window;
-  std::vector<double> events{duration};
+  std::vector<double> events = motion.ends_of_waits(window);
+  events.push_back(duration);
   if (is_short(window, period)) {
     for (const double t : motion.times()) events.insert(events.end(), {t, t + window});
     std::sort(events.begin(), events.end());

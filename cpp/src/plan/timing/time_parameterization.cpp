@@ -7,6 +7,7 @@
 #include "mmgrasp/core/error.hpp"
 #include "plan/timing/blended_path.hpp"
 #include "plan/timing/jerk_limit.hpp"
+#include "plan/timing/path_deviation.hpp"
 #include "plan/timing/path_timing.hpp"
 #include "plan/timing/timing_stop.hpp"
 #include "plan/timing/trajectory_sampling.hpp"
@@ -89,8 +90,8 @@ class TimedPath {
   JointTrajectory trajectory(const std::vector<double>& deviations) const {
     if (waypoints_.size() < 2) return at_rest(waypoints_.front());
     monitor_.report("time path", 0);
-    const detail::BlendedPath path(waypoints_, deviations);
-    JointTrajectory result = jerk_limits_.size() == 0 ? fastest(path, 1) : smoothest(path);
+    JointTrajectory result =
+        jerk_limits_.size() == 0 ? fastest(detail::BlendedPath(waypoints_, deviations), 1) : smoothest(deviations);
     result.positions.front() = waypoints_.front();
     result.positions.back() = waypoints_.back();
     result.velocities.front().setZero();
@@ -107,16 +108,31 @@ class TimedPath {
   }
 
   /// The quickest of motions under several shares of the acceleration limits: under tight jerk limits lower
-  /// accelerations may take less time.
-  JointTrajectory smoothest(const detail::BlendedPath& path) const {
+  /// accelerations may take less time, and cut corners less.
+  JointTrajectory smoothest(const std::vector<double>& deviations) const {
     JointTrajectory best;
     for (double share = 1; share > kLeastAccelerationShare; share *= kShareStep) {
       monitor_.report("limit jerk", std::log(share) / std::log(kLeastAccelerationShare));
-      JointTrajectory trial = detail::limit_jerk(fastest(path, share), velocity_limits_, acceleration_limits_,
-                                                 jerk_limits_, period_, monitor_.stop);
-      if (best.times.empty() || trial.duration() < best.duration()) best = std::move(trial);
+      improve(best, share, deviations);
     }
     return best;
+  }
+
+  /// Averaging cuts corners by more than their arcs do: arcs become tighter, and stops at last, until what is allowed
+  /// holds. A motion that is not quicker than `best` before that is given up.
+  void improve(JointTrajectory& best, double share, const std::vector<double>& allowed) const {
+    std::vector<double> deviations = allowed;
+    for (;;) {
+      const JointTrajectory fast = fastest(detail::BlendedPath(waypoints_, deviations), share);
+      JointTrajectory trial =
+          detail::limit_jerk(fast, velocity_limits_, acceleration_limits_, jerk_limits_, period_, monitor_.stop);
+      if (!best.times.empty() && trial.duration() >= best.duration()) return;
+      const bool unchanged = trial.times == fast.times;
+      if (unchanged || detail::keeps_deviation(trial, waypoints_, allowed, deviations, monitor_.stop)) {
+        best = std::move(trial);
+        return;
+      }
+    }
   }
 
   std::size_t corner_count() const { return waypoints_.size() < 2 ? 0 : waypoints_.size() - 2; }

@@ -15,7 +15,8 @@ constexpr int kTries = 300;             // IK solutions tried for a part: fewer 
 constexpr int kBeside = 2;              // Cells so many rows or columns from a region are beside it.
 constexpr double kLeastServing = 0.85;  // Least share of the poses drawn in a region that serve all its parts.
 constexpr int kSectors = 8;             // The border is looked at in pieces: a region may lack one side only.
-constexpr double kOutside = 0.5;        // Largest share of a piece's cells that serve, too: planners search less hard.
+constexpr double kOutside = 0.5;        // Largest share of the cells beside it that do: planners search less hard.
+constexpr double kPiece = 0.75;         // Largest share of the cells of one piece.
 constexpr double kClaimed = 0.9;        // Least share of the poses drawn in the disc that a stop claims.
 constexpr std::size_t kFewest = 5;      // Fewer samples than this tell nothing.
 constexpr int kFirstLook = 5;           // Cells drawn in each piece of the border, more where these serve.
@@ -142,10 +143,20 @@ class RegionCheck {
                              " base poses drawn in it all parts can be grasped"});
     }
     if (plan_.padded) return;
+    Look all;
     for (const std::vector<Cell>& piece : cells.border()) {
-      if (piece.size() < kFewest || complete(cells, piece, parts, where)) continue;
+      if (piece.size() < kFewest) continue;
+      Look look = looked_at(cells, piece, kFirstLook, parts);
+      all += look;
+      if (look.share() > kOutside) look += looked_at(cells, piece, count, parts);
+      if (context_.monitor.stopped()) return;
+      if (look.share() <= kPiece) continue;
+      const Eigen::Vector3d middle = cells.pose(piece[piece.size() / 2], 0.5, 0.5);
+      incomplete(where, look,
+                 ", around (" + text(middle.x()) + ", " + text(middle.y()) + ") at heading " + text(middle.z()) + ",");
       return;  // one piece that is missing is enough
     }
+    if (all.share() > kOutside) incomplete(where, all, "");
   }
 
   /// The disc that a stop claims, beyond its uncertainty disc, which is checked more closely.
@@ -170,25 +181,32 @@ class RegionCheck {
   }
 
  private:
-  /// Whether most cells of a piece of the border do not serve. Few are looked at where these few do not.
-  bool complete(const RegionCells& cells, const std::vector<Cell>& piece, const std::vector<int>& parts,
-                const std::string& where) {
+  /// How many cells were looked at, and how many of them serve.
+  struct Look {
     int good = 0, tried = 0;
-    for (const int count : {kFirstLook, context_.options.region_samples}) {
-      for (const Cell& cell : drawn(piece, count, rng_)) {
-        if (context_.monitor.stopped()) return true;
-        good += whole_cell_serves(cells, cell, parts);
-        ++tried;
-      }
-      if (good <= kOutside * tried) return true;
+
+    double share() const { return tried == 0 ? 0.0 : static_cast<double>(good) / tried; }
+    void operator+=(const Look& other) {
+      good += other.good;
+      tried += other.tried;
     }
-    const Eigen::Vector3d middle = cells.pose(piece[piece.size() / 2], 0.5, 0.5);
-    faults_.push_back({"region-incomplete", where,
-                       "from " + std::to_string(good) + " of " + std::to_string(tried) +
-                           " cells drawn beside it, around (" + text(middle.x()) + ", " + text(middle.y()) +
-                           ") at heading " + text(middle.z()) +
-                           ", all parts can be grasped: the least number of stops is not proven"});
-    return false;
+  };
+
+  Look looked_at(const RegionCells& cells, const std::vector<Cell>& piece, int count, const std::vector<int>& parts) {
+    Look look;
+    for (const Cell& cell : drawn(piece, count, rng_)) {
+      if (context_.monitor.stopped()) return look;
+      look.good += whole_cell_serves(cells, cell, parts);
+      ++look.tried;
+    }
+    return look;
+  }
+
+  void incomplete(const std::string& region, const Look& look, const std::string& place) {
+    faults_.push_back({"region-incomplete", region,
+                       "from " + std::to_string(look.good) + " of " + std::to_string(look.tried) +
+                           " cells drawn beside it" + place +
+                           " all parts can be grasped: the least number of stops is not proven"});
   }
 
   bool serves(const Eigen::Vector3d& pose, const std::vector<int>& parts, bool thoroughly = false) {

@@ -153,7 +153,7 @@ void imagine(const ProbabilisticSdf& map, const HandModel& hand, DepthImage imag
 }  // namespace
 
 void NextViewOptions::check() const {
-  require(candidates > 0, "candidates", candidates, "must be positive");
+  require(candidates >= 1 && candidates <= 1000000, "candidates", candidates, "must be in [1, 1000000]");
   require(std::isfinite(distance) && distance > 0, "distance", distance, "must be positive and finite [m]");
   require(min_elevation >= -detail::kPi / 2 && min_elevation < max_elevation, "min_elevation", min_elevation,
           "must be from -pi/2 to below max_elevation [rad]");

@@ -17,6 +17,7 @@ from ._core import IoError
 ASSETS = Path(__file__).parent / "assets"
 LARGEST_FILE = 4_000_000_000  # of a mesh or any other part of a robot [bytes], as in C++
 DRAFT = ".writing."  # begins the names of folders that are being filled
+_NO_PLACES = ("/dev", "/proc", "/sys")
 SCHEMAS = Path(__file__).parent / "schemas"
 
 
@@ -30,6 +31,9 @@ def check_folder(path: Path) -> None:
     """Raises IoError unless files can be written into the folder, which is made for the trial and removed again: for calls that work long before they write."""
     made: list[Path] = []
     try:
+        real = os.path.realpath(path)
+        if any(os.path.commonpath([real, place]) == place for place in _NO_PLACES) and not real.startswith("/dev/shm"):
+            raise IoError(f"{printable(os.fspath(path))}: cannot be written: devices and processes are there, no files")
         for folder in reversed([path, *path.parents]):
             if not folder.exists():
                 folder.mkdir()

@@ -313,6 +313,29 @@ def test_only_an_earlier_result_of_the_same_kind_is_replaced(tmp_path: Path) -> 
         assert path.read_bytes() == foreign
 
 
+@pytest.mark.parametrize("place", ["/dev", "/dev/new", "/proc/self", "/sys/new"])
+def test_nothing_is_written_among_devices(place: str) -> None:
+    with pytest.raises(mg.IoError, match="devices and processes are there"):
+        OutputFolder(Path(place))
+
+
+def test_an_interruption_among_the_pictures_says_what_is_there(tmp_path: Path) -> None:
+    with (
+        pytest.raises(KeyboardInterrupt, match=r"the results are in .*, without"),
+        OutputFolder(tmp_path).illustrated(),
+    ):
+        raise KeyboardInterrupt
+
+
+def test_a_full_standard_output_is_named(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object) -> int:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr("mmgrasp.cli.commands._run", full)
+    assert main(["plan"]) == 2
+    assert "standard output: cannot be written: No space left" in capsys.readouterr().err
+
+
 def test_links_stay_links(tmp_path: Path) -> None:
     (tmp_path / "far").mkdir()
     (tmp_path / "link").symlink_to(tmp_path / "far" / "file")

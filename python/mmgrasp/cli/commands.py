@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Console
 
 from .._core import Error, InvalidInput, Outcome
-from .._files import GIF, PNG, check_file, check_new_file, printable, temporary_room, write_file
+from .._files import GIF, PNG, check_file, check_folder, check_new_file, printable, temporary_room, write_file
 from ..documents.reading import Document
 from ..part_supply import (
     ScenarioPlan,
@@ -218,6 +218,7 @@ def run_reproduce(arguments: argparse.Namespace, console: Console) -> int:
         return DONE
     names = [e for name in arguments.name for e in (again.ENTRIES if name == "all" else [again.entry(name).name])]
     if arguments.out is not None:
+        check_folder(arguments.out)
         for name in names:
             check_places(name, arguments.seed, arguments.out)
     results = []
@@ -281,8 +282,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return code_of(signal.SIGPIPE)
     except Ended as end:
         return _said(f"ended by {end}", code_of(end.number))
-    except KeyboardInterrupt:
-        return _said("interrupted", INTERRUPTED)
+    except KeyboardInterrupt as end:
+        return _said(": ".join(["interrupted", *map(str, end.args)]), INTERRUPTED)
     except (Error, OSError, RecursionError, MemoryError, ImportError) as error:
         return _said(_reason(error), BAD_INPUT)
 
@@ -313,4 +314,6 @@ def _reason(error: Exception) -> str:
         return "out of memory: use a coarser grid, larger voxels, fewer samples or fewer parts"
     if isinstance(error, ImportError):  # a library that is broken, or that there is no memory for
         return f"a part of the installation cannot be loaded: {error}"
+    if isinstance(error, OSError) and not isinstance(error, Error) and error.strerror and error.filename is None:
+        return f"standard output: cannot be written: {error.strerror}"  # files have their names
     return str(error)

@@ -69,10 +69,14 @@ class OutputFolder:
                 yield draft
         except BrokenPipeError:
             raise
+        except KeyboardInterrupt:
+            raise KeyboardInterrupt(self._without_pictures()) from None
         except (Error, OSError, MemoryError, ImportError) as error:
             reason = "out of memory" if isinstance(error, MemoryError) else error
-            where = printable(str(self.path))
-            raise IoError(f"{reason}: the results are in {where}, without all of their pictures and report") from None
+            raise IoError(f"{reason}: {self._without_pictures()}") from None
+
+    def _without_pictures(self) -> str:
+        return f"the results are in {printable(str(self.path))}, without all of their pictures and report"
 
     @contextlib.contextmanager
     def filled(self, *, added: bool = False, replacing: str = "") -> Iterator[Path]:

@@ -42,10 +42,10 @@ def _hand(plan: Plan) -> Found:
 
 def _robot(plan: Plan) -> Found:
     robot, region = plan["scenario"]["robot"], plan["scenario"]["place_region"]
-    first = robot["urdfs"][0]
-    if not first["parent_link"] and not _same(first["pose"], _IDENTITY):
-        yield "scenario.robot.urdfs[0].pose", "moves the robot's root, which stands where the base does"
-    for k, link in enumerate(robot["links"]):
+    for k, urdf in enumerate(robot.get("urdfs", [])):
+        if not urdf["parent_link"] and not _same(urdf["pose"], _IDENTITY):
+            yield f"scenario.robot.urdfs[{k}].pose", "moves the robot's root, which stands where the base does"
+    for k, link in enumerate(robot.get("links", [])):
         if link["name"] != BIN_LINK or not link["shapes"]:
             continue
         if not _same(link["shapes"][0].get("size", [])[:2], region["size"]):

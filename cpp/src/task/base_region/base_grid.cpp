@@ -41,9 +41,9 @@ BaseGrid make_base_grid(const PartSupplyProblem& problem, const ReachDatabase& d
   const auto up = [&](double v) { return std::ceil(v / grid.resolution - 1e-9); };
   const Eigen::Vector2d cells(up(box.max().x()) - down(box.min().x()), up(box.max().y()) - down(box.min().y()));
   if (!(cells.prod() * static_cast<double>(grid.headings.size()) <= kMaxCells)) {
-    char wide[64];
-    std::snprintf(wide, sizeof(wide), "%.0f x %.0f cells of %g m", cells.x(), cells.y(), grid.resolution);
-    throw InvalidInput("base grid: " + std::string(wide) + " in " + std::to_string(grid.headings.size()) +
+    char wide[96];
+    std::snprintf(wide, sizeof(wide), "grid.resolution = %g: %.0f x %.0f cells", grid.resolution, cells.x(), cells.y());
+    throw InvalidInput(std::string(wide) + " in " + std::to_string(grid.headings.size()) +
                        " headings are more than 20 million: list fewer headings of trays, raise grid_resolution, lower "
                        "grid_max_distance, or plan for trays that are nearer to each other");
   }

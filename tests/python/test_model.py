@@ -84,7 +84,8 @@ def test_check_writes_an_srdf_with_the_computed_pairs(tmp_path: Path, capfd: pyt
     assert again.disabled_pairs == sampled.disabled_pairs
     assert {"adjacent", "never"} <= {reason for *_, reason in again.disabled_pairs}
     assert len(again.disabled_pairs) > len(plain.disabled_pairs)
-    # With an SRDF given, groups, states and the rest are kept.
+    # With an SRDF given, groups, states and the rest are kept. It is written beside: what is there is not replaced.
+    target = target.with_name("full.srdf")
     assert (
         main(
             [

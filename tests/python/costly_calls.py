@@ -505,7 +505,7 @@ COSTLY: dict[str, Callable[[], CALL]] = {
     "ProbabilisticSdf.cast_rays": rays,
     "ProbabilisticSdf.distances": of(points, ao.sdf_map().distances),
     "ProbabilisticSdf.query": of(points, lambda p: ao.sdf_map().query(p, threads=1)),
-    "ProbabilisticSdf.mesh": of(fine_sdf, lambda s: [s.mesh() for _ in range(20)]),
+    "ProbabilisticSdf.mesh": of(fine_sdf, lambda s: [s.mesh() for _ in range(400)]),
     "ProbabilisticSdf.points": of(fine_sdf, lambda s: [s.points() for _ in range(50)]),
     "ProbabilisticSdf.obstacle_cells": of(fine_sdf, lambda s: [s.obstacle_cells() for _ in range(50)]),
     "ProbabilisticSdf.save": saved_sdf,

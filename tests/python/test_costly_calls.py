@@ -15,7 +15,7 @@ QUICK = ["robust_intersections", "paired_order", "optimised_order", "planar_face
 
 CHEAP = {
     "a value or a record is made of the arguments, in proportion to their size": """
-        AssemblyGrasp AssemblyOperation BaseGrid BaseRegion BaseTracker BeamFrame BeamMaterial BeamMember BeamSection BeamSupport Box
+        AssemblyGrasp AssemblyOperation HoldingRequirement KeepOff BaseGrid BaseRegion BaseTracker BeamFrame BeamMaterial BeamMember BeamSection BeamSupport Box
         Capsule Cylinder DepthCamera DepthImage DepthNoise DepthNoise.stereo DepthNoise.structured_light DepthNoise.time_of_flight
         DriveByTask FingerGrip Grasp GridDistanceField Gripper GripperActuator Hand HandBody HandJoint HeightMap IkSeedDatabase
         JointTrajectory LineGrasp LinkShape ManipulationProblem NodeLoad ObjectPathEvaluator ObjectPathProblem OccupancyMap
@@ -26,12 +26,14 @@ CHEAP = {
         verify.PlanToCheck verify.Fault
         """,
     "a text or arrays are made of a result": """
+        write_plan
         BaseRegion.cells BaseRegion.part_cells RobotMotion.to_csv RobotMotion.to_joint_trajectory JointTrajectory.to_joint_trajectory
         ObjectRegions.base_region ObjectRegions.parts ObjectRegions.region GraspSynthesis.summary GraspOptimum.sag_candidates
         Robot.to_srdf Robot.to_urdf Gripper.to_urdf Gripper.finger_mesh Gripper.hand Hand.shapes Pipe.shapes FittedCuboid.shape
         CapabilityMap.slice World.copy World.shapes_of World.pose_of CollisionChecker.clone BeamFrame.split
         """,
     "a closed form of a few numbers": """
+        held_load operation_load
         BaseGrid.centre BasePath.duration BaseTracker.command BaseTracker.reset DepthNoise.sigma Gripper.holds Hand.joint_values
         Hand.opening_at Hand.posture_values Hand.pregrasp_opening Hand.share_open LineGrasp.probability LineGrasp.success
         PinholeCamera.project Pipe.grasp centric_grasps closing_outcome drive_arc flat_contact grasp_holding joint_velocity
@@ -39,6 +41,7 @@ CHEAP = {
         soft_finger_torque wheel_speeds make_base_grid
         """,
     "one configuration, one pose, one time, one place or one body": """
+        verify.width_unlike_opening
         CapabilityMap.configuration CapabilityMap.index_at CollisionChecker.contacts CollisionChecker.distance
         CollisionChecker.distances CollisionChecker.first_contact CollisionChecker.is_free CollisionChecker.rejection
         IkObjective.evaluate IkSeedDatabase.add IkSeedDatabase.seeds JointGroup.at JointGroup.fk JointGroup.force_manipulability
@@ -60,6 +63,9 @@ CHEAP = {
         CapabilityMap.load CapabilityMap.save OccupancyMap.load OccupancyMap.save ReachDatabase.load ReachDatabase.save
         ReachDatabase.verify Roadmap.load Roadmap.save
         """,
+    "one operation of an assembly: Ctrl-C is tested for all of them together (plan_grippers), these alone were not measured yet": """
+        free_gripper operation_overlap rehearse_operation segment_grasps
+        """,
     "lists names, or looks up one": """
         _allowed_bodies cache_folder derivative_free_solver_names find_package grasp_search_names manipulation_planner_names
         nlp_solver_names planner_names population_search_names
@@ -72,7 +78,7 @@ CHEAP = {
         """,
     "needs a whole problem, and ends by its progress callback and by Ctrl-C in tests of its own (test_interrupt.py, test_scenario.py, ...)": """
         CapabilityMap.restricted JointGroup.ik_branches ObjectRegions.remove RobotMotion.of_drive finger_length_range
-        minimal_grippers preferred_grippers next_view optimize_grasp plan_drive_by plan_manipulation plan_object_pick
+        minimal_grippers plan_grippers preferred_grippers next_view optimize_grasp plan_drive_by plan_manipulation plan_object_pick
         plan_part_supply plan_pick plan_platform_locations plan_stop_picks share_headings shorten_drive_by solve_nonlinear
         verify.check_plan
         """,

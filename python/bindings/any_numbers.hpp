@@ -10,9 +10,8 @@ namespace mmgrasp::python {
 /// (n,), also infinite or NaN; size < 0 takes any length.
 inline Eigen::VectorXd any_numbers(const py::handle& value, const std::string& name, Eigen::Index size,
                                    const std::string& like = "") {
-  const py::array given = py::array::ensure(value);
+  const py::array given = plain_array(value, name);
   if (!given || std::string("fiub").find(given.dtype().kind()) == std::string::npos) {
-    PyErr_Clear();
     throw InvalidInput(name + ": must be an array of numbers");
   }
   if (given.ndim() != 1 || (size >= 0 && given.shape(0) != size)) {

@@ -38,23 +38,36 @@ std::vector<py::ssize_t> shape_of(const py::array& array) {
   throw InvalidInput(name + " has shape " + shape_text(shape_of(array)) + ": must be " + wanted);
 }
 
+}  // namespace
+
+py::array plain_array(const py::handle& value, const std::string& name) {
+  if (value.is_none()) return py::array();
+  if (py::isinstance<py::array>(value) && py::hasattr(value, "mask") &&
+      py::cast<bool>(value.attr("mask").attr("__array__")().attr("any")())) {
+    throw InvalidInput(name + ": a masked array of which entries are masked: fill them, where NaN may stand for what " +
+                       "is not known with array.filled(numpy.nan)");
+  }
+  py::array array = py::array::ensure(value);
+  if (!array) PyErr_Clear();
+  return array;
+}
+
+namespace {
+
 /// The value as numpy's array, its element type one of `kinds` (numpy's letters).
 py::array array_of(const py::handle& value, const std::string& name, const std::string& kinds,
                    const std::string& wanted) {
-  py::array raw = value.is_none() ? py::array() : py::array::ensure(value);
-  PyErr_Clear();
+  const py::array raw = plain_array(value, name);
   if (!value.is_none() && raw && kinds.find(raw.dtype().kind()) != std::string::npos) return raw;
   std::string given = value.is_none() ? "None" : std::string(py::str(py::type::handle_of(value).attr("__name__")));
   if (raw && py::isinstance<py::array>(value)) given += " of " + std::string(py::str(raw.dtype()));
   throw InvalidInput(name + " = <" + given + ">: must be an array of " + wanted);
 }
 
-constexpr double kFinite = std::numeric_limits<double>::max();
-
 /// `shape`: lengths, -1 for any. They are looked at first: a copy of what cannot fit may take all memory. No number is
 /// larger than `largest`.
 Array numbers(const py::handle& value, const std::string& name, const std::vector<Eigen::Index>& shape,
-              const std::string& wanted, double largest = kFinite) {
+              const std::string& wanted, double largest) {
   const py::array raw = array_of(value, name, "fiu", "numbers of shape " + wanted);
   const auto given = shape_of(raw);
   const auto fits = [](Eigen::Index length, py::ssize_t found) { return length < 0 || length == found; };
@@ -64,15 +77,17 @@ Array numbers(const py::handle& value, const std::string& name, const std::vecto
     PyErr_Clear();
     throw InvalidInput(name + ": cannot be converted to an array of float64");
   }
+  const auto fits_in = [&](double number) {
+    return std::abs(number) <= std::min(largest, kLargestNumber) || (std::isinf(number) && std::isinf(largest));
+  };
   for (py::ssize_t i = 0; i < array.size(); ++i) {
-    if (!(std::abs(array.data()[i]) <= largest)) {
+    if (!fits_in(array.data()[i])) {
       const py::ssize_t columns = array.shape(array.ndim() - 1);
       const std::string entry = array.ndim() == 2
                                     ? "(" + std::to_string(i / columns) + ", " + std::to_string(i % columns) + ")"
                                     : std::to_string(i);
       throw InvalidInput(name + " holds " + shown(array.data()[i]) + " at entry " + entry +
-                         (largest == detail::kInfinity ? ": must be a number"
-                          : largest == kFinite         ? ": must be finite"
+                         (largest == detail::kInfinity ? ": must be a number, within 1e15 or infinite"
                                                        : ": must be finite and within " + shown(largest)));
     }
   }
@@ -86,27 +101,20 @@ std::string count_text(Eigen::Index count, const char* any) {
 }  // namespace
 
 double finite_argument(double value, const std::string& name) {
-  require(std::isfinite(value), name, value, "must be finite");
+  require_number(value, name);
   return value;
 }
 
-std::vector<double> finite_argument(std::vector<double> values, const std::string& name) {
-  for (std::size_t i = 0; i < values.size(); ++i) finite_argument(values[i], name + "[" + std::to_string(i) + "]");
-  return values;
-}
-
-static Eigen::VectorXd vector_of(const py::handle& value, const std::string& name, Eigen::Index size, double largest) {
+Eigen::VectorXd vector_argument(const py::handle& value, const std::string& name, Eigen::Index size, double largest) {
   const std::string wanted = "(" + count_text(size, "n") + ",)";
   const Array array = numbers(value, name, {size}, wanted, largest);
   return Eigen::Map<const Eigen::VectorXd>(array.data(), array.size());
 }
 
-Eigen::VectorXd vector_argument(const py::handle& value, const std::string& name, Eigen::Index size) {
-  return vector_of(value, name, size, kFinite);
-}
-
-Eigen::VectorXd configuration_argument(const py::handle& value, const std::string& name, Eigen::Index size) {
-  return vector_of(value, name, size, kLargestLength);
+std::vector<double> list_argument(const py::handle& value, const std::string& name, double largest) {
+  const bool none = PySequence_Check(value.ptr()) != 0 && PySequence_Size(value.ptr()) == 0;  // [] has no type
+  const Eigen::VectorXd numbers = none ? Eigen::VectorXd() : vector_argument(value, name, -1, largest);
+  return {numbers.begin(), numbers.end()};
 }
 
 Eigen::Vector2d vector2_argument(const py::handle& value, const std::string& name) {
@@ -123,15 +131,12 @@ static Array rows_of_numbers(const py::handle& value, const std::string& name, E
 }
 
 py::array_t<double> batch_argument(const py::handle& value, const std::string& name, Eigen::Index columns) {
-  return rows_of_numbers(value, name, columns, kFinite);
-}
-
-py::array_t<double> configuration_batch(const py::handle& value, const std::string& name, Eigen::Index columns) {
   return rows_of_numbers(value, name, columns, kLargestLength);
 }
 
-Eigen::MatrixXd matrix_argument(const py::handle& value, const std::string& name, Eigen::Index columns, bool infinite) {
-  const Array array = rows_of_numbers(value, name, columns, infinite ? detail::kInfinity : kFinite);
+Eigen::MatrixXd matrix_argument(const py::handle& value, const std::string& name, Eigen::Index columns,
+                                double largest) {
+  const Array array = rows_of_numbers(value, name, columns, largest);
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   return Eigen::Map<const RowMajor>(array.data(), array.shape(0), array.shape(1));
 }
@@ -141,7 +146,7 @@ Pose pose_argument(const py::object& value, const std::string& name) {
 }
 
 Pose pose_argument(const ArrayLike& value, const std::string& name) {
-  const Array array = numbers(value, name, {4, 4}, "(4, 4)");
+  const Array array = numbers(value, name, {4, 4}, "(4, 4)", kLargestLength);
   return checked_pose(Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(array.data()), name);
 }
 
@@ -179,11 +184,6 @@ static std::vector<Eigen::VectorXd> split(const Array& array) {
 }
 
 std::vector<Eigen::VectorXd> rows_argument(const py::handle& value, const std::string& name, Eigen::Index columns) {
-  return split(rows_of_numbers(value, name, columns, kFinite));
-}
-
-std::vector<Eigen::VectorXd> configurations_argument(const py::handle& value, const std::string& name,
-                                                     Eigen::Index columns) {
   return split(rows_of_numbers(value, name, columns, kLargestLength));
 }
 

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/core/pose.hpp"
 #include "mmgrasp/geometry/shape.hpp"
 #include "mmgrasp/robot/joint.hpp"
@@ -24,16 +25,25 @@ class ArrayLike : public py::object {
   PYBIND11_OBJECT_DEFAULT(ArrayLike, py::object, [](PyObject* o) { return static_cast<int>(o != nullptr); })
 };
 
-/// A plain number that is neither infinite nor NaN, and a list of such.
+/// What numpy makes of the argument, empty where it can make nothing of it. A masked array's hidden entries would come
+/// to light: refused.
+py::array plain_array(const py::handle& value, const std::string& name);
+
+// Numbers of arrays are within kLargestLength, whatever they mean: lengths, angles, times, forces. Where more may be
+// meant, `largest` says so.
+
+/// A plain number.
 double finite_argument(double value, const std::string& name);
-std::vector<double> finite_argument(std::vector<double> values, const std::string& name);
 /// (n,) with finite entries; size < 0 takes any length.
-Eigen::VectorXd vector_argument(const py::handle& value, const std::string& name, Eigen::Index size = -1);
+Eigen::VectorXd vector_argument(const py::handle& value, const std::string& name, Eigen::Index size = -1,
+                                double largest = kLargestLength);
+/// The same as a list.
+std::vector<double> list_argument(const py::handle& value, const std::string& name, double largest = kLargestLength);
 Eigen::Vector2d vector2_argument(const py::handle& value, const std::string& name);
 Eigen::Vector3d vector3_argument(const py::handle& value, const std::string& name);
-/// (m, columns) with finite entries, or with `infinite` also infinite ones; columns < 0 takes any number.
+/// (m, columns) with finite entries, or infinite ones where `largest` is; columns < 0 takes any number.
 Eigen::MatrixXd matrix_argument(const py::handle& value, const std::string& name, Eigen::Index columns = -1,
-                                bool infinite = false);
+                                double largest = kLargestLength);
 /// (m, columns) with finite entries, as an array of float64 whose rows lie next to each other; not copied where the
 /// argument is one.
 py::array_t<double> batch_argument(const py::handle& value, const std::string& name, Eigen::Index columns);
@@ -45,12 +55,6 @@ std::vector<std::uint8_t> flags_argument(const py::handle& value, const std::str
                                          const std::vector<py::ssize_t>& shape = {});
 /// (m, n) rows as separate vectors.
 std::vector<Eigen::VectorXd> rows_argument(const py::handle& value, const std::string& name, Eigen::Index columns = -1);
-
-/// The same of joint values [rad, m], none beyond kLargestLength: a configuration (n,), several (m, n), many (m, n).
-Eigen::VectorXd configuration_argument(const py::handle& value, const std::string& name, Eigen::Index size = -1);
-std::vector<Eigen::VectorXd> configurations_argument(const py::handle& value, const std::string& name,
-                                                     Eigen::Index columns = -1);
-py::array_t<double> configuration_batch(const py::handle& value, const std::string& name, Eigen::Index columns);
 
 py::array_t<double> to_array(const Pose& T);
 py::array_t<double> to_array(const Poses& poses);                             ///< (m, 4, 4)

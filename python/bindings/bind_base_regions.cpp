@@ -28,15 +28,17 @@ CellMask mask_argument(const BaseGrid& grid, const ArrayLike& cells) {
 
 void bind_region_classes(py::module_& m) {
   py::class_<BaseGrid>(m, "BaseGrid", "Square cells over the floor, one layer for each heading.")
-      .def(py::init([](const ArrayLike& origin, double resolution, int nx, int ny, std::vector<double> headings) {
-             if (!(resolution > 0) || nx <= 0 || ny <= 0 || headings.empty()) {
-               throw InvalidInput("BaseGrid: resolution, nx and ny must be > 0 and headings not empty");
+      .def(py::init([](const ArrayLike& origin, double resolution, int nx, int ny, const ArrayLike& headings) {
+             const BaseGrid grid{vector2_argument(origin, "origin"), resolution, nx, ny,
+                                 list_argument(headings, "headings")};
+             require_length(resolution, "resolution");
+             if (nx <= 0 || ny <= 0 || grid.headings.empty()) {
+               throw InvalidInput("BaseGrid: nx and ny must be > 0 and headings not empty");
              }
-             return BaseGrid{vector2_argument(origin, "origin"), finite_argument(resolution, "resolution"), nx, ny,
-                             finite_argument(std::move(headings), "headings")};
+             return grid;
            }),
            py::arg("origin"), py::arg("resolution"), py::arg("nx"), py::arg("ny"),
-           py::arg("headings") = std::vector<double>{0.0},
+           py::arg("headings") = py::make_tuple(0.0),
            "`origin` (2,) is the lower corner of cell (0, 0) [m], `resolution` the edge of a cell [m], nx and ny "
            "the\ncells along x and y, `headings` one layer each [rad], distinct.")
       .def_readonly("origin", &BaseGrid::origin, "Lower corner of cell (0, 0) [m].")

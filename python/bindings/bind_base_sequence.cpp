@@ -181,7 +181,7 @@ void bind_routes(py::module_& m) {
         options.base = arm.robot().base();
         options.resolution = resolution;
         CollisionChecker checker(with_sampled_pairs(arm), world);
-        const Eigen::VectorXd q = configuration_argument(home, "home", arm.size());
+        const Eigen::VectorXd q = vector_argument(home, "home", arm.size());
         const Eigen::Vector3d a = vector3_argument(from, "start"), b = vector3_argument(to, "goal");
         return LongCall(py::none()).run([&](const Monitor& monitor) {
           return plan_base_route(checker, q, a, b, options, monitor);
@@ -198,7 +198,7 @@ void bind_routes(py::module_& m) {
         options.base = arm.robot().base();
         options.resolution = resolution;
         const CollisionChecker checker(with_sampled_pairs(arm), world);
-        const Eigen::VectorXd q = configuration_argument(home, "home", arm.size());
+        const Eigen::VectorXd q = vector_argument(home, "home", arm.size());
         const Eigen::MatrixXd rows = matrix_argument(positions, "positions", 3);
         std::vector<Eigen::Vector3d> poses;
         for (Eigen::Index i = 0; i < rows.rows(); ++i) poses.emplace_back(rows.row(i));

@@ -198,11 +198,11 @@ void bind_map(py::module_& m) {
           "that approach within that angle of each pose count.")
       .def(
           "best_base_distance",
-          [](const CapabilityMap& map, const ArrayLike& T_world_tips, const std::vector<double>& distances,
-             double heading, double cone) {
+          [](const CapabilityMap& map, const ArrayLike& T_world_tips, const ArrayLike& given, double heading,
+             double cone) {
             const Poses tips = poses_argument(T_world_tips, "T_world_tips");
             finite_argument(heading, "heading");
-            finite_argument(distances, "distances");
+            const std::vector<double> distances = list_argument(given, "distances");
             finite_argument(cone, "cone");
             const BaseDistance best =
                 interruptible([&] { return best_base_distance(map, tips, heading, distances, cone); });

@@ -55,7 +55,7 @@ void bind_line(py::module_& m) {
          const Progress& progress, const py::kwargs& options) {
         CollisionChecker checker = taken(given_checker, "checker").clone();
         const StraightLineOptions read = read_options(line_fields(), options, "plan_straight_line");
-        const Eigen::VectorXd from = configuration_argument(start, "start", checker.group().size());
+        const Eigen::VectorXd from = vector_argument(start, "start", checker.group().size());
         const Pose to = pose_argument(T_world_to, "T_world_to");
         return LongCall(progress).run(
             [&](const Monitor& monitor) { return plan_straight_line(checker, from, to, read, monitor); });
@@ -119,7 +119,7 @@ void bind_cartesian(py::module_& m) {
         const Poses poses = poses_argument(tool_poses, "tool_poses");
         std::optional<Eigen::VectorXd> from;
         if (!near.is_none()) {
-          from = configuration_argument(py::reinterpret_borrow<ArrayLike>(near), "near", checker.group().size());
+          from = vector_argument(py::reinterpret_borrow<ArrayLike>(near), "near", checker.group().size());
         }
         return LongCall(progress).run(
             [&](const Monitor& monitor) { return plan_cartesian(checker, poses, from, read, monitor); });

@@ -100,11 +100,11 @@ void bind_answers(py::module_& m) {
 }
 
 Eigen::VectorXd configuration(const CollisionChecker& checker, const ArrayLike& q, const char* name) {
-  return configuration_argument(q, name, checker.group().size());
+  return vector_argument(q, name, checker.group().size());
 }
 
 py::array_t<bool> are_free_of_rows(const CollisionChecker& c, const ArrayLike& Q, int threads) {
-  const auto rows = configuration_batch(Q, "Q", c.group().size());
+  const auto rows = batch_argument(Q, "Q", c.group().size());
   const CollisionChecker own = c.clone();
   py::array_t<bool> out(rows.shape(0));
   bool* to = out.mutable_data();

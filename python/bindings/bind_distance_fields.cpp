@@ -10,9 +10,10 @@ namespace {
 GridDistanceField grid_of(const ArrayLike& values, const ArrayLike& origin, double spacing, double error,
                           double truncation) {
   using Values = py::array_t<double, py::array::c_style | py::array::forcecast>;
-  const auto array = Values::ensure(values);
-  if (!array || array.ndim() != 3) {
-    PyErr_Clear();
+  const py::array given = plain_array(values, "values");
+  const bool numbers = given && std::string("fiu").find(given.dtype().kind()) != std::string::npos;
+  const auto array = numbers ? Values::ensure(given) : Values();
+  if (!numbers || array.ndim() != 3) {
     throw InvalidInput("values: must be an array of numbers (nx, ny, nz)");
   }
   GridDistanceField::Grid grid;

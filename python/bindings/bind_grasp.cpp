@@ -93,17 +93,17 @@ void bind_record(py::module_& m) {
       "    T_world_hand = T_world_object @ grasp.T_object_hand")
       .def(
           py::init([](const ArrayLike& T_object_hand, const Given<double>& opening, const Given<double>& cost,
-                      const Given<double>& quality, std::vector<double> posture) {
+                      const Given<double>& quality, const ArrayLike& posture) {
             Grasp grasp;
             grasp.T_object_hand = pose_argument(T_object_hand, "T_object_hand");
             grasp.opening = taken(opening, "opening");
             grasp.cost = taken(cost, "cost");
             grasp.quality = taken(quality, "quality");
-            grasp.posture = finite_argument(std::move(posture), "posture");
+            grasp.posture = list_argument(posture, "posture");
             return grasp;
           }),
           "T_object_hand"_a, "opening"_a = 0.0, py::kw_only(), "cost"_a = 0.0, "quality"_a = 1.0,
-          "posture"_a = std::vector<double>{},
+          "posture"_a = py::tuple(),
           "Pose of the hand's tool frame in the object's frame (4, 4); distance between the fingers while holding [m]; "
           "cost that\nplanners add to their path's length; quality in [0, 1]; for a hand with several joint groups how "
           "far each is open, in [0, 1].")

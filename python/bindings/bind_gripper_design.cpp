@@ -263,7 +263,8 @@ void bind_gripper_design(py::module_& m) {
         const MinimalGrippersOptions options = read_options(minimal_grippers_fields(), keywords, "preferred_grippers");
         const auto asked = taken(requirements, "requirements", "SegmentRequirement");
         const auto drives = taken(actuators, "actuators", "GripperActuator");
-        const Eigen::VectorXd given = vector_argument(values, "values", static_cast<Eigen::Index>(asked.size()));
+        const Eigen::VectorXd given =
+            vector_argument(values, "values", static_cast<Eigen::Index>(asked.size()), kLargestNumber);
         const std::vector<double> worth(given.begin(), given.end());
         return LongCall(progress).run(
             [&](const Monitor& monitor) { return preferred_grippers(asked, worth, drives, options, monitor); });

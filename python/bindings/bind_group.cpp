@@ -12,11 +12,11 @@ namespace mmgrasp::python {
 namespace {
 
 Eigen::VectorXd configuration(const JointGroup& g, const ArrayLike& q, const char* name = "q") {
-  return configuration_argument(q, name, g.size());
+  return vector_argument(q, name, g.size());
 }
 
 Eigen::VectorXd base_configuration(const JointGroup& g, const OptionalArray& base) {
-  return base.is_none() ? Eigen::VectorXd() : configuration_argument(base, "base", g.size());
+  return base.is_none() ? Eigen::VectorXd() : vector_argument(base, "base", g.size());
 }
 
 /// The digits that fk_batch gives, which may differ from JointGroup::fk in the last one.
@@ -35,7 +35,7 @@ Eigen::MatrixXd jacobian_at(const JointGroup& g, const ArrayLike& q, const std::
 }
 
 py::array_t<double> jacobian_batch(const JointGroup& g, const ArrayLike& Q) {
-  const auto rows = configuration_batch(Q, "Q", g.size());
+  const auto rows = batch_argument(Q, "Q", g.size());
   const py::ssize_t n = g.size();
   py::array_t<double> out({rows.shape(0), py::ssize_t{6}, n});
   auto to = out.mutable_unchecked<3>();
@@ -52,7 +52,7 @@ py::array_t<double> jacobian_batch(const JointGroup& g, const ArrayLike& Q) {
 
 py::array_t<double> fk_batch_of_rows(const JointGroup& g, const ArrayLike& Q) {
   using RowMajor = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
-  const auto rows = configuration_batch(Q, "Q", g.size());
+  const auto rows = batch_argument(Q, "Q", g.size());
   py::array_t<double> out({rows.shape(0), py::ssize_t{4}, py::ssize_t{4}});
   double* to = out.mutable_data();
   Poses poses;
@@ -64,7 +64,7 @@ py::array_t<double> fk_batch_of_rows(const JointGroup& g, const ArrayLike& Q) {
 }
 
 Eigen::VectorXd manipulability_of_rows(const JointGroup& g, const ArrayLike& Q) {
-  const auto rows = configuration_batch(Q, "Q", g.size());
+  const auto rows = batch_argument(Q, "Q", g.size());
   Eigen::VectorXd values(rows.shape(0));
   in_pieces(rows.shape(0), [&](Eigen::Index first, Eigen::Index count) {
     values.segment(first, count) = manipulability_batch(g, columns_of(rows, first, count));

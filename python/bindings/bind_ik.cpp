@@ -134,7 +134,7 @@ void bind_group_methods(py::module_& m) {
           [](const JointGroup& g, const ArrayLike& T_world_tip, const OptionalArray& seed, const World* world,
              const py::kwargs& options) {
             const Eigen::VectorXd q0 = seed.is_none() ? Eigen::VectorXd(0.5 * (g.sample_lower() + g.sample_upper()))
-                                                      : configuration_argument(seed, "seed", g.size());
+                                                      : vector_argument(seed, "seed", g.size());
             return solve(g, pose_argument(T_world_tip, "T_world_tip"), q0, world,
                          read_options(ik_fields(), options, "ik"));
           },

@@ -22,7 +22,7 @@ void bind_ik_objectives(py::module_& m) {
           "evaluate",
           [](const IkObjective& o, const ArrayLike& q) {
             Eigen::VectorXd gradient;
-            const double cost = o.evaluate(configuration_argument(q, "q", o.size()), gradient);
+            const double cost = o.evaluate(vector_argument(q, "q", o.size()), gradient);
             return py::make_tuple(cost, gradient);
           },
           py::arg("q"), "(cost, gradient (n,)).")

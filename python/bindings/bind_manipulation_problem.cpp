@@ -27,12 +27,8 @@ std::vector<Grasp> grasps_argument(const py::object& value) {
     }
     if (all) return out;
   }
-  py::array array;
-  try {
-    array = py::module_::import("numpy").attr("asarray")(value, "dtype"_a = "float64");
-  } catch (const py::error_already_set&) {
-    refuse_value("grasps", value, "a list of Grasp or an array (m, 4, 4)");
-  }
+  const py::array array = plain_array(value, "grasps");
+  if (!array) refuse_value("grasps", value, "a list of Grasp or an array (m, 4, 4)");
   if (array.ndim() != 3 || array.shape(1) != 4 || array.shape(2) != 4) {
     throw InvalidInput("grasps has shape " + std::string(py::str(array.attr("shape"))) +
                        ": must be a list of Grasp or an array (m, 4, 4)");

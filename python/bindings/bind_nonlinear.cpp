@@ -147,7 +147,7 @@ Places shown(const SparsePattern& pattern) {
 }
 
 Eigen::VectorXd variables(const NonlinearProblem& problem, const Floats& x) {
-  return vector_argument(x, "x", problem.variable_bounds().lower.size());
+  return vector_argument(x, "x", problem.variable_bounds().lower.size(), kLargestNumber);
 }
 
 std::shared_ptr<NonlinearProblem> shared_problem(const py::object& value, const char* name) {
@@ -245,7 +245,7 @@ void bind_problem(py::module_& m) {
           [](P& p, const Floats& x, double factor, const Floats& multipliers) {
             const Eigen::VectorXd at = variables(p, x);
             const Eigen::VectorXd of_rows =
-                vector_argument(multipliers, "multipliers", p.constraint_bounds().lower.size());
+                vector_argument(multipliers, "multipliers", p.constraint_bounds().lower.size(), kLargestNumber);
             Eigen::VectorXd out(static_cast<Eigen::Index>(p.hessian_pattern().size()));
             p.hessian(at, factor, of_rows, out);
             return out;
@@ -312,7 +312,8 @@ void bind_solver(py::module_& m) {
          const Progress& progress, const py::kwargs& options) {
         const NlpOptions read = read_options(nlp_fields(), options, "solve_nonlinear");
         const std::shared_ptr<NonlinearProblem> to_solve = shared_problem(problem, "problem");
-        const Eigen::VectorXd guess = vector_argument(given_guess, "guess", to_solve->variable_bounds().lower.size());
+        const Eigen::VectorXd guess =
+            vector_argument(given_guess, "guess", to_solve->variable_bounds().lower.size(), kLargestNumber);
         return LongCall(progress).run(
             [&](const Monitor& monitor) { return solve_nonlinear(solver, *to_solve, guess, read, monitor); });
       },

@@ -1,6 +1,7 @@
 #include "any_numbers.hpp"
 #include "bindings.hpp"
 #include "given.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/optim/assignment.hpp"
 #include "mmgrasp/optim/derivative_free.hpp"
 #include "mmgrasp/optim/pairwise_weights.hpp"
@@ -36,7 +37,7 @@ DerivativeFreeResult minimize(const Objective& objective, const ArrayLike& given
                               const ArrayLike& given_upper, const std::string& solver, const Constraints& constraints,
                               int constraint_count, const Progress& progress, const py::kwargs& options) {
   const DerivativeFreeOptions read = read_options(derivative_free_fields(), options, "minimize_derivative_free");
-  const Eigen::VectorXd guess = vector_argument(given_guess, "guess");
+  const Eigen::VectorXd guess = vector_argument(given_guess, "guess", -1, kLargestNumber);
   if (guess.size() == 0) throw InvalidInput("guess has shape (0,): must be (n,) with n > 0");
   DerivativeFreeProblem problem;
   problem.bounds = {any_numbers(given_lower, "lower", guess.size(), ", as guess"),
@@ -122,15 +123,15 @@ void bind_optim(py::module_& m) {
       });
   m.def(
       "solve_set_cover",
-      [](int elements, const std::vector<std::vector<int>>& sets, const std::vector<double>& costs, double time_limit,
+      [](int elements, const std::vector<std::vector<int>>& sets, const ArrayLike& costs, double time_limit,
          const Progress& progress) {
-        SetCoverProblem problem{elements, sets, costs};
+        SetCoverProblem problem{elements, sets, list_argument(costs, "costs", kLargestNumber)};
         problem.check();
         return LongCall(progress).run(
             [&](const Monitor& monitor) { return solve_set_cover(problem, time_limit, monitor); });
       },
-      py::arg("elements"), py::arg("sets"), py::arg("costs") = std::vector<double>{}, py::kw_only(),
-      py::arg("time_limit") = 60.0, py::arg("progress") = py::none(),
+      py::arg("elements"), py::arg("sets"), py::arg("costs") = py::tuple(), py::kw_only(), py::arg("time_limit") = 60.0,
+      py::arg("progress") = py::none(),
       "Fewest (or cheapest) sets that cover all of 0..elements-1, with a proof (P1, equation 3.1).");
 
   py::class_<TourResult>(m, "TourResult", "What shortest_visiting_tour found.")
@@ -154,7 +155,7 @@ void bind_optim(py::module_& m) {
   m.def(
       "shortest_visiting_tour",
       [](const ArrayLike& given) {
-        const Eigen::MatrixXd lengths = matrix_argument(given, "lengths", -1, true);
+        const Eigen::MatrixXd lengths = matrix_argument(given, "lengths", -1, detail::kInfinity);
         return interruptible([&] { return shortest_visiting_tour(lengths); });
       },
       py::arg("lengths"),
@@ -164,7 +165,7 @@ void bind_optim(py::module_& m) {
   m.def(
       "cheapest_assignment",
       [](const ArrayLike& given) {
-        const Eigen::MatrixXd costs = matrix_argument(given, "costs");
+        const Eigen::MatrixXd costs = matrix_argument(given, "costs", -1, kLargestNumber);
         return interruptible([&] { return cheapest_assignment(costs); });
       },
       py::arg("costs"), "A column of its own for each row of (n, n) so that the sum of costs is least.");
@@ -188,8 +189,9 @@ void bind_optim(py::module_& m) {
       });
   m.def(
       "share_stops",
-      [](const ArrayLike& given, const std::vector<double>& stop_times, int robots) {
-        const Eigen::MatrixXd drive_times = matrix_argument(given, "drive_times", -1, true);
+      [](const ArrayLike& given, const ArrayLike& given_times, int robots) {
+        const Eigen::MatrixXd drive_times = matrix_argument(given, "drive_times", -1, detail::kInfinity);
+        const std::vector<double> stop_times = list_argument(given_times, "stop_times");
         return interruptible([&] { return share_stops(drive_times, stop_times, robots); });
       },
       py::arg("drive_times"), py::arg("stop_times"), py::arg("robots"),
@@ -209,7 +211,8 @@ void bind_optim(py::module_& m) {
   m.def(
       "pairwise_weights",
       [](const ArrayLike& comparison, const Given<double>& most) {
-        return pairwise_weights(matrix_argument(comparison, "comparison"), taken(most, "max_consistency_ratio"));
+        return pairwise_weights(matrix_argument(comparison, "comparison", -1, kLargestNumber),
+                                taken(most, "max_consistency_ratio"));
       },
       py::arg("comparison"), py::kw_only(), py::arg("max_consistency_ratio") = 0.1,
       "Weights by Saaty's AHP: `comparison[i, j]` says how much i is preferred to j, and [j, i] is one over it. A ratio"

@@ -37,10 +37,9 @@ const std::vector<OptionField<MotionOptions>>& motion_fields() {
 
 /// One goal (n,) or several (m, n).
 std::vector<Eigen::VectorXd> goals_argument(const ArrayLike& goal, Eigen::Index size) {
-  const py::array array = py::array::ensure(goal);
-  PyErr_Clear();
-  if (array && array.ndim() == 2) return configurations_argument(goal, "goal", size);
-  return {configuration_argument(goal, "goal", size)};
+  const py::array array = plain_array(goal, "goal");
+  if (array && array.ndim() == 2) return rows_argument(goal, "goal", size);
+  return {vector_argument(goal, "goal", size)};
 }
 
 MotionResult motion(const RobotOrChecker& robot, const OptionalGroup& given_group, const OptionalWorld& world,
@@ -54,7 +53,7 @@ MotionResult motion(const RobotOrChecker& robot, const OptionalGroup& given_grou
   MotionOptions read = read_options(motion_fields(), options, "plan_motion");
   if (orientation_constraint) read.orientation_constraint = taken(*orientation_constraint, "orientation_constraint");
   SolutionCallback callback(on_solution);
-  const Eigen::VectorXd from = configuration_argument(start, "start", group.size());
+  const Eigen::VectorXd from = vector_argument(start, "start", group.size());
   MotionGoals goals;
   if (!goal.is_none()) goals.configurations = goals_argument(py::reinterpret_borrow<ArrayLike>(goal), group.size());
   if (!tool_poses.is_none())
@@ -63,7 +62,7 @@ MotionResult motion(const RobotOrChecker& robot, const OptionalGroup& given_grou
   if (goal.is_none() && tool_poses.is_none() && goals.regions.empty())
     throw InvalidInput("goal = None: give goal, tool_poses or regions");
   std::vector<Eigen::VectorXd> waypoints;
-  if (!via.is_none()) waypoints = configurations_argument(py::reinterpret_borrow<ArrayLike>(via), "via", group.size());
+  if (!via.is_none()) waypoints = rows_argument(py::reinterpret_borrow<ArrayLike>(via), "via", group.size());
   return callback.run(progress, [&](const Monitor& monitor, const ImprovementCallback& better) {
     read.on_improvement = better;
     return plan_motion_via(checker, from, waypoints, goals, read, monitor);

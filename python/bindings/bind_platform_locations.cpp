@@ -105,8 +105,7 @@ void bind_database(py::module_& m) {
            "Empty, for configurations of `group`; beyond `capacity` the oldest are forgotten.")
       .def("__len__", &IkSeedDatabase::size)
       .def(
-          "add",
-          [](IkSeedDatabase& db, const ArrayLike& q) { db.add(configuration_argument(q, "q", db.group().size())); },
+          "add", [](IkSeedDatabase& db, const ArrayLike& q) { db.add(vector_argument(q, "q", db.group().size())); },
           py::arg("q"),
           "Remembers a configuration (n,) with the base taken out: where the tool stood relative to the root, and the "
           "arm's joints.")

@@ -76,12 +76,8 @@ const std::vector<OptionField<BasePlacementOptions>>& base_placement_fields() {
 
 /// (m, 4, 4)
 Poses pose_stack_argument(const ArrayLike& value, const std::string& name) {
-  py::array array;
-  try {
-    array = py::module_::import("numpy").attr("asarray")(value);
-  } catch (const py::error_already_set&) {
-    refuse_value(name, value, "an array (m, 4, 4)");
-  }
+  const py::array array = plain_array(value, name);
+  if (!array) refuse_value(name, value, "an array (m, 4, 4)");
   if (array.ndim() != 3 || array.shape(1) != 4 || array.shape(2) != 4)
     throw InvalidInput(name + " has shape " + std::string(py::str(array.attr("shape"))) + ": must be (m, 4, 4)");
   Poses out;

@@ -94,7 +94,7 @@ void bind_roadmap(py::module_& m) {
           "near",
           [](const Roadmap& roadmap, const ArrayLike& q) {
             std::vector<int> out;
-            roadmap.near(configuration_argument(q, "q", roadmap.group().size()), out);
+            roadmap.near(vector_argument(q, "q", roadmap.group().size()), out);
             return out;
           },
           "q"_a, "Vertices a new configuration would be joined with, ascending.")

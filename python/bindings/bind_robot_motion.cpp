@@ -51,7 +51,7 @@ void command(RobotMotion& motion, const std::string& what, const OptionalNumber&
 RobotMotion drive(const BasePath& path, const Robot& robot, const JointGroup& arm, const ArrayLike& configuration,
                   double period) {
   if (arm.has_base()) throw InvalidInput("arm: must be a group without the base");
-  const Eigen::VectorXd q = configuration_argument(configuration, "configuration", arm.size());
+  const Eigen::VectorXd q = vector_argument(configuration, "configuration", arm.size());
   return base_path_motion(path, robot.base(), robot.base_limits(), arm.names(), q, period);
 }
 

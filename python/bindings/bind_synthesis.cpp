@@ -310,10 +310,9 @@ void bind_synthesis(py::module_& m) {
           made.push_back({group, joints});
           count += static_cast<Eigen::Index>(joints.size());
         }
-        return eigengrasp_hand(
-            robot, tool_link, made,
-            {name, configuration_argument(open, "open", count), configuration_argument(closed, "closed", count)},
-            vector3_argument(approach, "approach"));
+        return eigengrasp_hand(robot, tool_link, made,
+                               {name, vector_argument(open, "open", count), vector_argument(closed, "closed", count)},
+                               vector3_argument(approach, "approach"));
       },
       "robot"_a, "tool_link"_a, "groups"_a, py::kw_only(), "open"_a, "closed"_a, "approach"_a = py::make_tuple(0, 0, 1),
       "name"_a = "type",

@@ -114,12 +114,12 @@ void bind_problem(py::module_& m) {
       });
   py::class_<Tray>(m, "Tray", "A tray and the parts in it; its walls are scene objects.")
       .def(py::init([](std::string name, const ArrayLike& T_world_tray, const ArrayLike& size, std::vector<Part> parts,
-                       std::vector<double> headings) {
+                       const ArrayLike& headings) {
              return Tray{std::move(name), pose_argument(T_world_tray, "T_world_tray"), vector3_argument(size, "size"),
-                         std::move(parts), finite_argument(std::move(headings), "headings")};
+                         std::move(parts), list_argument(headings, "headings")};
            }),
            py::arg("name"), py::arg("T_world_tray"), py::arg("size"), py::arg("parts"),
-           py::arg("headings") = std::vector<double>{},
+           py::arg("headings") = py::tuple(),
            "`T_world_tray` (4, 4): middle of the tray's floor, a robot in front of it looks along its +x; `size` (3,): "
            "depth,\nwidth, height [m]; `headings` of the base that are tried [rad], none given: the one that faces the "
            "tray.")
@@ -164,7 +164,7 @@ void bind_problem(py::module_& m) {
                                        gripper,
                                        world,
                                        std::move(trays),
-                                       configuration_argument(home, "home", arm.size()),
+                                       vector_argument(home, "home", arm.size()),
                                        vector3_argument(start, "start"),
                                        vector3_argument(goal, "goal"),
                                        place_region,
@@ -273,7 +273,7 @@ void bind_picks(py::module_& m) {
                             world,
                             object,
                             std::move(grasps),
-                            configuration_argument(home, "home", arm.size()),
+                            vector_argument(home, "home", arm.size()),
                             {},
                             read_options(pick_fields(), options, "plan_object_pick")};
         if (!places.is_none()) problem.places = poses_argument(py::reinterpret_borrow<ArrayLike>(places), "places");

@@ -33,7 +33,7 @@ void bind_timing(py::module_& m) {
       [](const ArrayLike& path, const ArrayLike& velocity_limits, const ArrayLike& acceleration_limits,
          const Given<Strings>& given_names, const Progress& progress, const py::kwargs& options) {
         const TimingOptions read = read_options(timing_fields(), options, "time_parameterize");
-        const JointPath waypoints{configurations_argument(path, "path")};
+        const JointPath waypoints{rows_argument(path, "path")};
         const Eigen::Index n = waypoints.waypoints.empty() ? -1 : waypoints.waypoints[0].size();
         const Eigen::VectorXd velocity = vector_argument(velocity_limits, "velocity_limits", n);
         const Eigen::VectorXd acceleration = vector_argument(acceleration_limits, "acceleration_limits", n);
@@ -55,7 +55,7 @@ void bind_timing(py::module_& m) {
          const Progress& progress, const py::kwargs& options) {
         CollisionChecker checker = taken(given_checker, "checker").clone();
         const TimingOptions read = read_options(timing_fields(), options, "time_parameterize_free");
-        const JointPath waypoints{configurations_argument(path, "path", checker.group().size())};
+        const JointPath waypoints{rows_argument(path, "path", checker.group().size())};
         const double joint_step = taken(given_step, "joint_step");
         return LongCall(progress).run([&](const Monitor& monitor) {
           return time_parameterize_free(checker, waypoints, read, joint_step, monitor);

@@ -4,6 +4,7 @@
 #include "bindings.hpp"
 #include "checker_argument.hpp"
 #include "drive_by_arguments.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/optim/nlp_solver.hpp"
 #include "mmgrasp/task/drive_by.hpp"
 #include "push_fields.hpp"
@@ -71,8 +72,7 @@ py::dict event_dict(const DriveByEvent& e) {
 }
 
 Poses candidates_argument(const ArrayLike& value) {
-  const py::array array = py::array::ensure(value);
-  PyErr_Clear();
+  const py::array array = plain_array(value, "T_world_tip");
   Poses poses;
   if (array && array.ndim() == 3) {
     for (py::ssize_t i = 0; i < array.shape(0); ++i)
@@ -294,8 +294,7 @@ DriveByResult shorten(const JointGroup& group, const World& world, const std::ve
                       std::vector<double> times, const ArrayLike& positions, std::vector<double> task_times,
                       const Progress& progress, const py::kwargs& options) {
   const DriveByOptions read = read_options(drive_by_fields(), options, "shorten_drive_by");
-  const KnownMotion known{std::move(times), configurations_argument(positions, "positions", group.size()),
-                          std::move(task_times)};
+  const KnownMotion known{std::move(times), rows_argument(positions, "positions", group.size()), std::move(task_times)};
   const JointGroup with_pairs = with_sampled_pairs(group);
   return LongCall(progress).run(
       [&](const Monitor& monitor) { return shorten_drive_by(with_pairs, world, tasks, known, read, monitor); });
@@ -307,7 +306,7 @@ DriveByResult drive_by(const RobotOrChecker& robot, const OptionalGroup& given_g
   const CollisionChecker checker = checker_argument(robot, given_group, world);
   const JointGroup& group = checker.group();
   const DriveByOptions read = read_options(drive_by_fields(), options, "plan_drive_by");
-  const Eigen::VectorXd from = configuration_argument(start, "start", group.size());
+  const Eigen::VectorXd from = vector_argument(start, "start", group.size());
   const DriveByGoal to = goal_argument(goal, group.size());
   return LongCall(progress).run(
       [&](const Monitor& monitor) { return plan_drive_by(checker, from, tasks, to, read, monitor); });
@@ -322,14 +321,13 @@ ViolationRows violations_dict(const std::vector<Violation>& violations) {
 }
 
 DriveByGoal goal_argument(const ArrayLike& goal, Eigen::Index size) {
-  const py::array array = py::array::ensure(goal);
-  PyErr_Clear();
+  const py::array array = plain_array(goal, "goal");
   if (array && array.ndim() == 2) {
-    const Eigen::MatrixXd box = matrix_argument(goal, "goal", size, true);
+    const Eigen::MatrixXd box = matrix_argument(goal, "goal", size, detail::kInfinity);
     if (box.rows() != 2) throw InvalidInput("goal: must be (n,), or (2, n) with lower and upper bounds");
     return {box.row(0).transpose(), box.row(1).transpose()};
   }
-  const Eigen::VectorXd q = configuration_argument(goal, "goal", size);
+  const Eigen::VectorXd q = vector_argument(goal, "goal", size);
   return {q, q};
 }
 
@@ -343,7 +341,7 @@ void bind_trajopt(py::module_& m) {
          int waypoints) -> py::object {
         DriveByOptions options;
         options.waypoints = waypoints;
-        const Eigen::VectorXd from = configuration_argument(start, "start", group.size());
+        const Eigen::VectorXd from = vector_argument(start, "start", group.size());
         const auto first = first_drive_by_guess(group, from, tasks, goal_argument(goal, group.size()), options);
         if (!first) return py::none();
         std::vector<int> intervals;

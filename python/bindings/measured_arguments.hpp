@@ -11,8 +11,7 @@ namespace mmgrasp::python {
 /// An array of real numbers as T, in which NaN and infinity may stand for what was not measured.
 template <typename T>
 py::array_t<T, py::array::c_style> measured_argument(const py::object& value, const std::string& name) {
-  const auto raw = py::array::ensure(value);
-  if (!raw) PyErr_Clear();
+  const py::array raw = plain_array(value, name);
   if (!raw || std::string("fiu").find(raw.dtype().kind()) == std::string::npos) {
     throw InvalidInput(name + ": must be an array of real numbers");
   }

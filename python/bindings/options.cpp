@@ -68,6 +68,7 @@ void convert(const py::handle& value, const std::string& name, double& out) {
   }
   out = py::cast<double>(value);
   if (!std::isfinite(out)) refuse_value(name, value, "finite");
+  require_number(out, name, "", kLargestNumber);
 }
 
 void convert(const py::handle& value, const std::string& name, std::int64_t& out) {

@@ -3,8 +3,7 @@
 namespace mmgrasp::python {
 
 Poses poses_argument(const ArrayLike& value, const std::string& name) {
-  const py::array array = py::array::ensure(value);
-  if (!array) PyErr_Clear();
+  const py::array array = plain_array(value, name);
   if (!array || array.ndim() != 3) return {pose_argument(value, name)};
   Poses poses;
   for (py::ssize_t i = 0; i < array.shape(0); ++i) {

@@ -36,6 +36,7 @@ VALUES: dict[str, Any] = {
     "0": 0,
     "1e-300": 1e-300,
     "1e300": 1e300,
+    "1e160": 1e160,
     "2**31-1": 2**31 - 1,
     "2**63": 2**63,
     "-2**63": -(2**63),
@@ -45,7 +46,7 @@ VALUES: dict[str, Any] = {
     "complex": 1j,
     "a huge list": [0.5] * 10**6,
 }
-NEVER = ("nan", "-inf", "a word", "complex", "a huge list")  # no number takes these
+NEVER = ("nan", "-inf", "1e160", "a word", "complex", "a huge list")  # no number takes these
 GIGABYTE = 2**30
 SOFT, HARD = 2.0, 8  # [s] of processor time: when Ctrl-C comes, and when a try that does not hear it is ended
 LONGEST = 600.0  # [s] that a try may take on the clock, when others use the processor
@@ -193,7 +194,7 @@ def complaint(one: Try, outcome: str) -> str | None:
     annotation = shown_at(one)[1].annotation
     is_plain = re.fullmatch(r"(float|int)( \| None)?", annotation) is not None
     if (
-        one.value == "inf"
+        one.value in ("inf", "1e160")
         and is_plain
         and (one.parameter in UNBOUNDED or f"{one.function}.{one.parameter}" in UNBOUNDED)
     ):

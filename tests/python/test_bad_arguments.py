@@ -69,6 +69,23 @@ def call(argument: Argument, value: Any) -> Any:
     return callable_of(argument.function)(**{argument.name: value, **others})
 
 
+def is_any_number(argument: Argument) -> bool:
+    """Costs, values, and what a solver is given are no lengths: they may be larger."""
+    functions = ("minimize_derivative_free", "solve_nonlinear", "cheapest_assignment", "solve_set_cover")
+    named = (
+        "preferred_grippers.values",
+        "pairwise_weights.comparison",
+        "NodeLoad.force",
+        "NodeLoad.moment",
+        "share_stops.drive_times",
+        "shortest_visiting_tour.lengths",
+    )
+    return (
+        argument.function.startswith(("NonlinearProblem.", *functions))
+        or f"{argument.function}.{argument.name}" in named
+    )
+
+
 def bad_values(argument: Argument) -> dict[str, Any]:
     good = value_of(argument)
     bad = {
@@ -88,8 +105,14 @@ def bad_values(argument: Argument) -> dict[str, Any]:
     if good.dtype == float:
         for what in (np.nan, np.inf, -np.inf):
             spoilt = good.copy()
-            spoilt.flat[good.size - 2] = what  # the last one of `lengths` means nothing
+            spoilt.flat[max(good.size - 2, 0)] = what  # the last one of `lengths` means nothing
             bad[f"{what}"] = spoilt
+        hidden = np.zeros(good.shape, bool)
+        hidden.flat[0] = True
+        bad["masked"] = np.ma.masked_array(good, mask=hidden)
+        beyond = good.copy()
+        beyond.flat[max(good.size - 2, 0)] = 1.1e15 if is_any_number(argument) else 1.1e6
+        bad["beyond the largest"] = beyond
     else:
         bad["a two"] = good * 2
         bad["minus one"] = -good.astype(int)
@@ -97,13 +120,18 @@ def bad_values(argument: Argument) -> dict[str, Any]:
     bad["one column more"] = np.concatenate([good, good[..., :1]], axis=-1)
     if argument.function in ("verify.CheckedMotion", "verify.CheckedRegion"):
         del bad["one column more"]  # parts of a plan that do not fit together are faults that the check reports
-    if argument.function == "verify.CheckedRegion" or argument.name in ("joint_weights", "jerk_limits"):
-        del bad["no entries"]  # weights and limits of no joint are those that were left out
+    if argument.name in ("headings", "distances", "posture"):
+        del bad["one column more"]  # as many as one likes
+    left_out = ("joint_weights", "jerk_limits", "posture", "Tray.headings", "solve_set_cover.costs")
+    whole = f"{argument.function}.{argument.name}"
+    if argument.name in left_out or whole in left_out or argument.function == "verify.CheckedRegion":
+        bad.pop("no entries", None)  # the same as leaving it out
     if not argument.optional:
         bad["None"] = None
     if argument.function == "minimize_derivative_free":
         for infinite in {"lower": ["-inf"], "upper": ["inf"]}.get(argument.name, []):
             del bad[infinite]  # no bound
+        bad.pop("beyond the largest" if argument.name in ("lower", "upper") else "", None)  # 1e20 is none, either
     if argument.name in ("lengths", "drive_times"):
         del bad["inf"]  # no way between two stops
     return bad

@@ -5,6 +5,7 @@
 #include "mmgrasp/control/base_tracking.hpp"
 #include "mmgrasp/control/unicycle.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/core/pose.hpp"
 #include "mmgrasp/robot/base_motion.hpp"
 
@@ -14,7 +15,7 @@ namespace {
 constexpr double kStanding = 1e-9;  // below this speed a plan drives neither forwards nor backwards [m/s]
 
 void check_not_negative(double value, const char* field) {
-  require(std::isfinite(value) && value >= 0, field, value, "must be finite and not negative");
+  require_not_negative(value, field);
 }
 
 Eigen::Vector2d point(const Eigen::Vector3d& pose, double offset) {
@@ -27,8 +28,8 @@ void BaseTrackingOptions::check() const {
   check_not_negative(kp, "kp");
   check_not_negative(ki, "ki");
   check_not_negative(kd, "kd");
-  require(std::isfinite(offset) && offset > 0, "offset", offset, "must be finite and positive");
-  require(std::isfinite(period) && period > 0, "period", period, "must be finite and positive");
+  require_positive(offset, "offset");
+  require_positive(period, "period");
   check_not_negative(settle, "settle");
 }
 
@@ -57,8 +58,7 @@ Eigen::Vector3d BaseTracker::correction(const Eigen::Vector3d& error) {
 
 Eigen::Vector3d BaseTracker::command(const Eigen::Vector3d& desired, const Eigen::Vector3d& desired_next,
                                      const Eigen::Vector3d& measured) {
-  for (int i = 0; i < 3; ++i)
-    require(std::isfinite(measured[i]), "measured[" + std::to_string(i) + "]", measured[i], "must be finite");
+  for (int i = 0; i < 3; ++i) require_number(measured[i], "measured[" + std::to_string(i) + "]");
   Eigen::Vector3d planned = arc_velocity(desired, desired_next, options_.period);
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
   if (kind_ == BaseKind::diff_drive) {

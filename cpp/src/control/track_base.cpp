@@ -6,6 +6,7 @@
 #include "mmgrasp/control/base_tracking.hpp"
 #include "mmgrasp/control/unicycle.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/core/pose.hpp"
 #include "mmgrasp/core/random.hpp"
 #include "mmgrasp/robot/base_motion.hpp"
@@ -69,13 +70,13 @@ void BaseDisturbance::check() const {
   for (const auto& [slip, field] : {std::pair(slip_left, "slip_left"), std::pair(slip_right, "slip_right")})
     require(slip >= 0 && slip < 1, field, slip, "must lie in [0, 1)");
   for (int i = 0; i < 3; ++i) {
-    require(std::isfinite(drift[i]), "drift[" + std::to_string(i) + "]", drift[i], "must be finite");
-    require(std::isfinite(start_error[i]), "start_error[" + std::to_string(i) + "]", start_error[i], "must be finite");
+    require_number(drift[i], "drift[" + std::to_string(i) + "]");
+    require_number(start_error[i], "start_error[" + std::to_string(i) + "]");
   }
   for (const auto& [noise, field] :
        {std::pair(travel_noise, "travel_noise"), std::pair(position_noise, "position_noise"),
         std::pair(heading_noise, "heading_noise")})
-    require(std::isfinite(noise) && noise >= 0, field, noise, "must be finite and not negative");
+    require_not_negative(noise, field);
 }
 
 double BaseTrackingResult::mean_error() const {

@@ -5,6 +5,7 @@
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -16,7 +17,7 @@ double sinc(double x) {
 
 void check_finite(const Eigen::Vector3d& v, const char* field) {
   const char* parts[] = {"[0]", "[1]", "[2]"};
-  for (int i = 0; i < 3; ++i) require(std::isfinite(v[i]), std::string(field) + parts[i], v[i], "must be finite");
+  for (int i = 0; i < 3; ++i) require_number(v[i], std::string(field) + parts[i]);
 }
 
 }  // namespace
@@ -24,7 +25,7 @@ void check_finite(const Eigen::Vector3d& v, const char* field) {
 Eigen::Vector3d drive_arc(const Eigen::Vector3d& pose, const Eigen::Vector3d& platform_velocity, double time) {
   check_finite(pose, "pose");
   check_finite(platform_velocity, "platform_velocity");
-  require(std::isfinite(time) && time >= 0, "time", time, "must be finite and not negative");
+  require_not_negative(time, "time");
   const double turn = platform_velocity.z() * time;
   Eigen::Vector3d result = pose;
   result.head<2>() += time * sinc(turn / 2) * (Eigen::Rotation2Dd(pose.z() + turn / 2) * platform_velocity.head<2>());
@@ -35,7 +36,7 @@ Eigen::Vector3d drive_arc(const Eigen::Vector3d& pose, const Eigen::Vector3d& pl
 Eigen::Vector3d arc_velocity(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double time) {
   check_finite(from, "from");
   check_finite(to, "to");
-  require(std::isfinite(time) && time > 0, "time", time, "must be finite and positive");
+  require_positive(time, "time");
   const double turn = to.z() - from.z();
   require(std::abs(turn) < detail::kTwoPi, "to[2]", to.z(), "must lie less than a full turn from from[2]");
   Eigen::Vector3d velocity;

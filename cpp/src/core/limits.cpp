@@ -7,6 +7,34 @@
 
 namespace mmgrasp {
 
+static void refuse(double value, std::string_view field, const char* rule, double largest, std::string_view unit) {
+  char bound[32];
+  std::snprintf(bound, sizeof(bound), "%g", largest);
+  std::string text = rule + std::string(bound);
+  if (!unit.empty()) text += " [" + std::string(unit) + "]";
+  require(false, std::string(field), value, text);
+}
+
+void require_positive(double value, std::string_view field, std::string_view unit, double largest) {
+  if (!(value > 0 && value <= largest)) refuse(value, field, "must be positive and finite, at most ", largest, unit);
+}
+
+void require_not_negative(double value, std::string_view field, std::string_view unit, double largest) {
+  if (!(value >= 0 && value <= largest)) refuse(value, field, "must be zero or positive, at most ", largest, unit);
+}
+
+void require_number(double value, std::string_view field, std::string_view unit, double largest) {
+  if (!(std::abs(value) <= largest)) refuse(value, field, "must be finite and within ", largest, unit);
+}
+
+void require_numbers(const Eigen::Ref<const Eigen::VectorXd>& values, std::string_view field, std::string_view unit,
+                     double largest) {
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    if (std::abs(values[i]) <= largest) continue;
+    require_number(values[i], std::string(field) + "[" + std::to_string(i) + "]", unit, largest);
+  }
+}
+
 void require_length(double value, const std::string& field) {
   require(value >= kSmallestLength && value <= kLargestLength, field, value,
           "must be finite and > 0, in [1e-9, 1e6] m");

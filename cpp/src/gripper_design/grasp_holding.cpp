@@ -6,6 +6,7 @@
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -87,32 +88,28 @@ double torque_beside(const Pads& pads, const FingerGrip& grip, const Wrench& loa
   return least;
 }
 
-void require_positive(const char* name, double value, const char* rule) {
-  require(std::isfinite(value) && value > 0, name, value, rule);
-}
-
 }  // namespace
 
 void FingerGrip::check() const {
-  require_positive("force", force, "must be a positive force [N]");
-  require_positive("friction", friction, "must be a positive coefficient");
-  require_positive("modulus", modulus, "must be a positive modulus [Pa]");
+  require_positive(force, "force", "N");
+  require_positive(friction, "friction");
+  require_positive(modulus, "modulus", "Pa", kLargestNumber);
   require(pad_radius > 0, "pad_radius", pad_radius, "must be a positive length [m], or infinite");
 }
 
 void AssemblyLoad::check() const {
-  if (!weight.allFinite()) throw InvalidInput("weight: must be finite forces [N]");
-  if (!centre.allFinite()) throw InvalidInput("centre: must be a finite point [m]");
-  if (!resistance.allFinite()) throw InvalidInput("resistance: must be finite forces [N]");
-  if (!hole.allFinite()) throw InvalidInput("hole: must be a finite point [m]");
+  require_numbers(weight, "weight", "N");
+  require_numbers(centre, "centre", "m");
+  require_numbers(resistance, "resistance", "N");
+  require_numbers(hole, "hole", "m");
 }
 
 GraspHolding grasp_holding(const AssemblyGrasp& grasp, const FingerGrip& grip, const AssemblyLoad& load) {
   grasp.check();
   grip.check();
   load.check();
-  require_positive("contact_length", grasp.contact_length, "must be a positive length [m]");
-  require_positive("contact_width", grasp.contact_width, "must be a positive length [m]");
+  require_positive(grasp.contact_length, "contact_length", "m");
+  require_positive(grasp.contact_width, "contact_width", "m");
   const Pads pads = pads_of(grasp, grip);
   const Pose T_tool = grasp.T_active_tool.inverse();
   const auto wrench = [&](const Vector3d& force, const Vector3d& at) {

@@ -12,6 +12,7 @@
 #include "mmgrasp/core/detail/file_content.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/grasp/hand.hpp"
 
 namespace mmgrasp {
@@ -165,12 +166,10 @@ void Gripper::check() const {
   require(!name.empty() && std::all_of(name.begin(), name.end(), allowed), "name", "'" + name + "'",
           "must be made of letters, digits, '_', '-' and '.'");
   require(fingers == 2 || fingers == 3, "fingers", fingers, "must be 2 or 3");
-  require(std::isfinite(min_opening) && min_opening >= 0, "min_opening", min_opening, "must be at least 0 [m]");
-  require(std::isfinite(max_opening) && max_opening > min_opening, "max_opening", max_opening,
-          "must be above min_opening [m]");
-  const auto positive = [](const char* field, double value) {
-    require(std::isfinite(value) && value > 0, field, value, "must be positive");
-  };
+  require_not_negative(min_opening, "min_opening", "m");
+  require_number(max_opening, "max_opening", "m");
+  require(max_opening > min_opening, "max_opening", max_opening, "must be above min_opening [m]");
+  const auto positive = [](const char* field, double value) { require_positive(value, field); };
   positive("finger_length", finger_length);
   positive("finger_width", finger_width);
   positive("finger_thickness", finger_thickness);

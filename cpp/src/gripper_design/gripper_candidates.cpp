@@ -10,6 +10,7 @@
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp::detail {
 namespace {
@@ -134,9 +135,9 @@ void check_actuators(const std::vector<GripperActuator>& actuators) {
     if (a.name.empty()) throw InvalidInput("name of an actuator is empty: every actuator must have one");
     if (!names.insert(a.name).second) throw InvalidInput("actuator '" + a.name + "' is there twice: names must differ");
     require(a.fingers == 2 || a.fingers == 3, "fingers" + of, a.fingers, "must be 2 or 3");
-    require(std::isfinite(a.stroke) && a.stroke > 0, "stroke" + of, a.stroke, "must be a positive length [m]");
+    require_positive(a.stroke, "stroke" + of, "m");
     require(a.max_opening >= a.stroke, "max_opening" + of, a.max_opening, "must be at least the stroke [m]");
-    require(std::isfinite(a.cost) && a.cost > 0, "cost" + of, a.cost, "must be positive");
+    require_positive(a.cost, "cost" + of, "", kLargestNumber);
   }
 }
 

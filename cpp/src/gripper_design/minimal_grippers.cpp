@@ -11,6 +11,7 @@
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/detail/stopwatch.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/optim/set_cover.hpp"
 
 namespace mmgrasp {
@@ -217,19 +218,15 @@ class Problem {
 }  // namespace
 
 void MinimalGrippersOptions::check() const {
-  require(std::isfinite(shortest_finger) && shortest_finger > 0, "shortest_finger", shortest_finger,
-          "must be a positive length [m]");
-  require(std::isfinite(longest_finger) && longest_finger >= shortest_finger, "longest_finger", longest_finger,
+  require_positive(shortest_finger, "shortest_finger", "m");
+  require_number(longest_finger, "longest_finger", "m");
+  require(longest_finger >= shortest_finger, "longest_finger", longest_finger,
           "must be a length of at least shortest_finger [m]");
-  require(std::isfinite(opening_margin) && opening_margin >= 0, "opening_margin", opening_margin,
-          "must be a length of at least 0 [m]");
-  require(std::isfinite(length_margin) && length_margin >= 0, "length_margin", length_margin,
-          "must be a length of at least 0 [m]");
-  require(std::isfinite(finger_width) && finger_width > 0, "finger_width", finger_width,
-          "must be a positive length [m]");
-  require(std::isfinite(finger_thickness) && finger_thickness > 0, "finger_thickness", finger_thickness,
-          "must be a positive length [m]");
-  require(std::isfinite(change_cost) && change_cost >= 0, "change_cost", change_cost, "must be at least 0");
+  require_not_negative(opening_margin, "opening_margin", "m");
+  require_not_negative(length_margin, "length_margin", "m");
+  require_positive(finger_width, "finger_width", "m");
+  require_positive(finger_thickness, "finger_thickness", "m");
+  require_not_negative(change_cost, "change_cost", "", kLargestNumber);
   require(grid_openings >= 0 && grid_openings <= kMaxGrid, "grid_openings", grid_openings, "must be from 0 to 10000");
   require(grid_lengths >= 0 && grid_lengths <= kMaxGrid, "grid_lengths", grid_lengths, "must be from 0 to 10000");
   require((grid_openings == 0) == (grid_lengths == 0), "grid_lengths", grid_lengths,

@@ -6,6 +6,7 @@
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -28,8 +29,8 @@ void add_volume(const TriangleMesh& mesh, double& volume, Vector3d& moment) {
 
 void HoldingRequirement::check() const {
   grip.check();
-  require(std::isfinite(density) && density > 0, "density", density, "must be a positive density [kg/m3]");
-  require(std::isfinite(least_safety) && least_safety >= 0, "least_safety", least_safety, "must be at least 0");
+  require_positive(density, "density", "kg/m3");
+  require_not_negative(least_safety, "least_safety");
 }
 
 OperationLoad operation_load(const AssemblyOperation& operation, const HoldingRequirement& requirement) {

@@ -9,6 +9,7 @@
 
 #include "gripper_design/motion_looks.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/core/random.hpp"
 #include "mmgrasp/geometry/distance_field.hpp"
 
@@ -102,7 +103,7 @@ class Overlaps {
 
 OperationOverlap operation_overlap(const AssemblyOperation& operation, double allowed, const Monitor& monitor) {
   operation.check();
-  require(std::isfinite(allowed) && allowed >= 0, "allowed", allowed, "must be a length of at least 0 [m]");
+  require_not_negative(allowed, "allowed", "m");
   Overlaps overlaps(operation);
   const OperationOverlap at_end = overlaps.at(operation.motion.back());
   if (at_end.depth > allowed) return at_end;

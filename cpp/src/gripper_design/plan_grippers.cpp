@@ -9,6 +9,7 @@
 #include "gripper_design/gripper_candidates.hpp"
 #include "gripper_design/segment_judgement.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/core/parallel.hpp"
 #include "mmgrasp/gripper_design/operation_overlap.hpp"
 #include "mmgrasp/gripper_design/rehearse_operation.hpp"
@@ -279,13 +280,11 @@ class Planning {
 
 void PlanGrippersOptions::check() const {
   set_options(*this).check();
-  const auto positive = [](const char* field, double value) {
-    require(std::isfinite(value) && value > 0, field, value, "must be a positive length [m]");
-  };
+  const auto positive = [](const char* field, double value) { require_positive(value, field, "m"); };
   positive("min_contact", min_contact);
-  require(std::isfinite(clearance) && clearance >= 0, "clearance", clearance, "must be at least 0 [m]");
-  require(std::isfinite(tip_clearance) && tip_clearance >= 0, "tip_clearance", tip_clearance, "must be at least 0 [m]");
-  require(std::isfinite(max_overlap) && max_overlap >= 0, "max_overlap", max_overlap, "must be at least 0 [m]");
+  require_not_negative(clearance, "clearance", "m");
+  require_not_negative(tip_clearance, "tip_clearance", "m");
+  require_not_negative(max_overlap, "max_overlap", "m");
   require(directions >= 1 && directions <= 360, "directions", directions, "must be from 1 to 360");
   resolve_threads(threads);  // refuses what is no number of threads
   if (holding) holding->check();

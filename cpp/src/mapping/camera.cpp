@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
 
@@ -13,11 +14,11 @@ void PinholeCamera::check() const {
   require(height > 0, "camera.height", height, "must be positive");
   require(double(width) * height <= kMostPixels, "camera.width", width,
           "times camera.height must be at most 50 million pixels");
-  require(std::isfinite(fx) && fx > 0, "camera.fx", fx, "must be positive and finite");
-  require(std::isfinite(fy) && fy > 0, "camera.fy", fy, "must be positive and finite");
-  require(std::isfinite(cx), "camera.cx", cx, "must be finite");
-  require(std::isfinite(cy), "camera.cy", cy, "must be finite");
-  require(std::isfinite(nearest) && nearest > 0, "camera.nearest", nearest, "must be positive and finite");
+  require_positive(fx, "camera.fx");
+  require_positive(fy, "camera.fy");
+  require_number(cx, "camera.cx");
+  require_number(cy, "camera.cy");
+  require_positive(nearest, "camera.nearest");
   require(farthest > nearest, "camera.farthest", farthest, "must be more than camera.nearest");
 }
 

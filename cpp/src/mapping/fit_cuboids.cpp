@@ -20,7 +20,7 @@ constexpr double kHalfPi = 1.57079632679489661923;
 void check_tray(const KnownTray& tray) {
   checked_pose(tray.T_world_tray.matrix(), "tray.T_world_tray");
   for (int k = 0; k < 3; ++k) require_length(tray.size[k], "tray.size");
-  require(std::isfinite(tray.wall) && tray.wall >= 0, "tray.wall", tray.wall, "must be zero or positive [m]");
+  require_not_negative(tray.wall, "tray.wall", "m");
   require(2 * tray.wall < tray.size.head<2>().minCoeff(), "tray.wall", tray.wall, "must leave room between the walls");
 }
 
@@ -167,8 +167,8 @@ class CuboidFitter {
 
 void CuboidFitOptions::check() const {
   require_length(plane_tolerance, "plane_tolerance");
-  require(std::isfinite(wall_margin) && wall_margin >= 0, "wall_margin", wall_margin, "must be zero or positive [m]");
-  require(up.allFinite(), "up", "not finite", "must be a direction, or zero for any plane");
+  require_not_negative(wall_margin, "wall_margin", "m");
+  require_numbers(up, "up");
   require(up_angle > 0 && up_angle <= kHalfPi, "up_angle", up_angle, "must be above 0 and at most pi/2 [rad]");
   require_length(max_height, "max_height");
   require_length(cluster_tolerance, "cluster_tolerance");
@@ -183,7 +183,7 @@ CuboidFit fit_cuboids(const std::vector<Vector3d>& points, const CuboidFitOption
                       const std::optional<KnownTray>& tray, const Vector3d& eye) {
   options.check();
   if (tray) check_tray(*tray);
-  require(eye.allFinite(), "eye", "not finite", "must be a point [m]");
+  require_numbers(eye, "eye", "m");
   return CuboidFitter(points, options, eye).fit(tray);
 }
 

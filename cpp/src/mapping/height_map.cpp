@@ -116,7 +116,7 @@ void HeightMap::check() const {
   const std::size_t cells = static_cast<std::size_t>(nx) * ny;
   require(height.size() == cells, "map.height", std::to_string(height.size()), "must be one a cell");
   require(upper.size() == cells, "map.upper", std::to_string(upper.size()), "must be one a cell");
-  require(std::isfinite(pixel) && pixel >= 0, "map.pixel", pixel, "must be zero or positive [m]");
+  require_not_negative(pixel, "map.pixel", "m");
 }
 
 void HeightMapOptions::check() const {

@@ -7,6 +7,7 @@
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/core/parallel.hpp"
 #include "mmgrasp/core/random.hpp"
 #include "mmgrasp/geometry/detail/shape_rays.hpp"
@@ -136,7 +137,7 @@ void disturb(DepthImage& image, const RenderOptions& options, int v) {
 }  // namespace
 
 void RenderOptions::check() const {
-  require(std::isfinite(noise) && noise >= 0, "noise", noise, "must be zero or positive and finite [m]");
+  require_not_negative(noise, "noise", "m");
   require(missing >= 0 && missing <= 1, "missing", missing, "must be in [0, 1]");
   resolve_threads(threads);  // says what is wrong
 }

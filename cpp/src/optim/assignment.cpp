@@ -6,13 +6,15 @@
 #include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
 
 std::vector<int> cheapest_assignment(const Eigen::MatrixXd& costs) {
   const std::string shape = "(" + std::to_string(costs.rows()) + ", " + std::to_string(costs.cols()) + ")";
   require(costs.rows() == costs.cols(), "shape of costs", shape, "must be square");
-  require(costs.allFinite(), "costs", costs.sum(), "must be finite");
+  for (Eigen::Index row = 0; row < costs.rows(); ++row)
+    require_numbers(costs.row(row).transpose(), "costs[" + std::to_string(row) + "]", "", kLargestNumber);
   // Row and column 0 stand for "none": each row in turn finds the cheapest way to a free column over reduced costs.
   const std::size_t n = costs.rows();
   std::vector<double> row_price(n + 1, 0), column_price(n + 1, 0), slack(n + 1);

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
 
@@ -20,7 +21,7 @@ PairwiseWeights pairwise_weights(const Eigen::MatrixXd& comparison, double max_c
   for (Eigen::Index i = 0; i < m; ++i) {
     for (Eigen::Index j = 0; j < m; ++j) {
       const std::string entry = "comparison[" + std::to_string(i) + ", " + std::to_string(j) + "]";
-      require(std::isfinite(comparison(i, j)) && comparison(i, j) > 0, entry, comparison(i, j), "must be positive");
+      require_positive(comparison(i, j), entry, "", kLargestNumber);
       if (std::abs(comparison(i, j) * comparison(j, i) - 1) <= 1e-6) continue;
       std::ostringstream opposite;
       opposite << std::setprecision(9) << 1 / comparison(j, i);

@@ -6,6 +6,7 @@
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "structure/node_pieces.hpp"
 #include "structure/section_axes.hpp"
 
@@ -17,9 +18,7 @@ void Pipe::check() const {
   require(!sections.empty(), "sections", "[]", "a pipe has at least one section");
   require(diameters.size() == sections.size(), "diameters", std::to_string(diameters.size()) + " values",
           "must be one for each of the " + std::to_string(sections.size()) + " sections");
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    require(nodes[i].allFinite(), entry("nodes", i), "not finite", "must be three finite numbers [m]");
-  }
+  for (std::size_t i = 0; i < nodes.size(); ++i) require_numbers(nodes[i], entry("nodes", i), "m");
   const int count = static_cast<int>(nodes.size());
   for (std::size_t i = 0; i < sections.size(); ++i) {
     const auto [a, b] = sections[i];
@@ -33,8 +32,7 @@ void Pipe::check() const {
       require(!((a == c && b == d) || (a == d && b == c)), entry("sections", i), value,
               "joins the same nodes as " + entry("sections", j));
     }
-    require(std::isfinite(diameters[i]) && diameters[i] > 0, entry("diameters", i), diameters[i],
-            "must be positive [m]");
+    require_length(diameters[i], entry("diameters", i));
   }
   detail::check_one_piece(nodes.size(), sections, "section", "pipe");
 }

@@ -7,6 +7,7 @@
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/core/random.hpp"
 
 namespace mmgrasp {
@@ -60,13 +61,12 @@ void PipeGraspOptions::check() const {
   require(unit(closing), "closing", closing.norm(), "must be a unit vector");
   require(std::abs(approach.dot(closing)) < 1e-6, "closing", approach.dot(closing),
           "must be orthogonal to approach (their product is given)");
-  require(std::isfinite(max_opening) && max_opening > 0, "max_opening", max_opening, "must be positive [m]");
-  require(std::isfinite(end_margin) && end_margin >= 0, "end_margin", end_margin, "must be zero or positive [m]");
-  require(std::isfinite(length_spacing) && length_spacing >= 1e-6, "length_spacing", length_spacing,
-          "must be at least 1e-6 [m]");
-  require(std::isfinite(angle_spacing) && angle_spacing > 0, "angle_spacing", angle_spacing, "must be positive [rad]");
-  require(std::isfinite(cost_per_metre) && cost_per_metre >= 0, "cost_per_metre", cost_per_metre,
-          "must be zero or positive [1/m]");
+  require_positive(max_opening, "max_opening", "m");
+  require_not_negative(end_margin, "end_margin", "m");
+  require_number(length_spacing, "length_spacing", "m");
+  require(length_spacing >= 1e-6, "length_spacing", length_spacing, "must be at least 1e-6 [m]");
+  require_positive(angle_spacing, "angle_spacing", "rad");
+  require_not_negative(cost_per_metre, "cost_per_metre", "1/m");
   require(draws > 0, "draws", draws, "must be positive");
 }
 
@@ -86,7 +86,7 @@ Grasp place_pipe_grasp(const Pipe& pipe, int section, double length, double angl
   require(section >= 0 && section < count, "section", section, "must be one of the " + std::to_string(count));
   require(length >= 0 && length <= pipe.length(section), "length", length,
           "must lie on the section of " + std::to_string(pipe.length(section)) + " m");
-  require(std::isfinite(angle), "angle", angle, "must be finite [rad]");
+  require_number(angle, "angle", "rad");
   const Pose T_object_section = pipe.T_object_section(section);
   const Vector3d approach(0, std::cos(angle), std::sin(angle));
   const Vector3d closing = Vector3d::UnitX().cross(approach) * (flipped ? -1 : 1);

@@ -5,6 +5,7 @@
 
 #include "mmgrasp/core/detail/stopwatch.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "trajopt/collision_terms.hpp"
 #include "trajopt/whole_body_nlp.hpp"
 
@@ -21,11 +22,11 @@ void WholeBodyOptions::check() const {
   require(tolerance > 0 && tolerance < 1, "tolerance", tolerance, "must be in (0, 1)");
   require(max_iterations > 0, "max_iterations", max_iterations, "must be positive");
   require(time_limit > 0, "time_limit", time_limit, "must be positive");
-  require(smoothing >= 0 && std::isfinite(smoothing), "smoothing", smoothing, "must be at least 0");
-  require(warm_start >= 0 && std::isfinite(warm_start), "warm_start", warm_start, "must be at least 0");
-  require(margin >= 0 && std::isfinite(margin), "margin", margin, "must be at least 0");
-  require(constraint_distance > margin && std::isfinite(constraint_distance), "constraint_distance",
-          constraint_distance, "must exceed margin");
+  require_not_negative(smoothing, "smoothing");
+  require_not_negative(warm_start, "warm_start");
+  require_not_negative(margin, "margin");
+  require_number(constraint_distance, "constraint_distance");
+  require(constraint_distance > margin, "constraint_distance", constraint_distance, "must exceed margin");
   require(refinements >= 0, "refinements", refinements, "must be at least 0");
 }
 

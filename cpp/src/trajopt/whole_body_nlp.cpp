@@ -5,6 +5,7 @@
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "trajopt/tool_terms.hpp"
 
 namespace mmgrasp::detail {
@@ -241,7 +242,7 @@ VectorXd WholeBodyNlp::pack(const WholeBodyGuess& guess) const {
           static_cast<double>(guess.positions.size()), "must hold " + std::to_string(last + 1) + " waypoints");
   require(guess.steps.size() == problem_.segments.size(), "guess.steps", static_cast<double>(guess.steps.size()),
           "must hold one time step per segment");
-  for (double h : guess.steps) require(h > 0 && std::isfinite(h), "guess.steps", h, "must be positive and finite");
+  for (double h : guess.steps) require_positive(h, "guess.steps");
   for (std::size_t i = 0; i < guess.positions.size(); ++i)
     problem_.group.check_configuration(guess.positions[i], "guess.positions[" + std::to_string(i) + "]");
   require(guess.drive.empty() || guess.drive.size() == guess.positions.size(), "guess.drive",

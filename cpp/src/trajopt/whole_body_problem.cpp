@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/robot/base_motion.hpp"
 #include "trajopt/tool_chain.hpp"
 
@@ -114,19 +115,18 @@ void WholeBodyProblem::check() const {
   for (std::size_t i = 0; i < segments.size(); ++i) {
     const std::string field = "segments[" + std::to_string(i) + "]";
     require(segments[i].intervals > 0, field + ".intervals", segments[i].intervals, "must be positive");
-    require(segments[i].min_duration >= 0 && std::isfinite(segments[i].min_duration), field + ".min_duration",
-            segments[i].min_duration, "must be at least 0");
+    require_not_negative(segments[i].min_duration, field + ".min_duration");
     require(segments[i].max_duration > 0 && segments[i].max_duration >= segments[i].min_duration,
             field + ".max_duration", segments[i].max_duration, "must be positive and at least min_duration");
   }
   for (std::size_t i = 0; i < tool.size(); ++i) check_tool(tool[i], waypoints(), "tool[" + std::to_string(i) + "]");
-  require(jerk_time >= 0 && std::isfinite(jerk_time), "jerk_time", jerk_time, "must be at least 0");
+  require_not_negative(jerk_time, "jerk_time");
   const VectorXd v = drive_velocity_limits(group), a = drive_acceleration_limits(group);
   const std::vector<std::string> names = drive_names(group);
   for (Eigen::Index i = 0; i < v.size(); ++i) {
     const std::string& name = names[i];
-    require(v[i] > 0 && std::isfinite(v[i]), "velocity limit of " + name, v[i], "must be positive and finite");
-    require(a[i] > 0 && std::isfinite(a[i]), "acceleration limit of " + name, a[i], "must be positive and finite");
+    require_positive(v[i], "velocity limit of " + name);
+    require_positive(a[i], "acceleration limit of " + name);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "trajopt/whole_body_nlp.hpp"
 
 namespace mmgrasp {
@@ -26,7 +27,7 @@ Eigen::MatrixXi table(int rows, int columns, At&& at) {
 WholeBodyProgram::WholeBodyProgram(const WholeBodyProblem& problem, const WholeBodyGuess& guess, double smoothing)
     : problem_(problem) {
   problem.check();
-  require(smoothing >= 0 && std::isfinite(smoothing), "smoothing", smoothing, "must be at least 0");
+  require_not_negative(smoothing, "smoothing");
   const auto nonlinear = std::make_shared<detail::WholeBodyNlp>(problem, smoothing);
   guess_ = nonlinear->pack(guess);
   nonlinear_ = nonlinear;
@@ -55,7 +56,7 @@ Eigen::VectorXi WholeBodyProgram::steps() const {
 const Eigen::VectorXd& WholeBodyProgram::checked(const Eigen::VectorXd& x) const {
   require(x.size() == guess_.size(), "x", static_cast<double>(x.size()),
           "must have " + std::to_string(guess_.size()) + " entries, one per variable");
-  require(x.allFinite(), "x", "not finite", "must be finite");
+  require_numbers(x, "x");
   const Eigen::VectorXi places = steps();
   for (Eigen::Index s = 0; s < places.size(); ++s)
     require(x[places[s]] > 0, nonlinear_->variable_name(places[s]), x[places[s]], "must be positive");

@@ -44,8 +44,8 @@ WholeBodyTrajectory::WholeBodyTrajectory(const JointGroup& group, std::vector<do
   const Eigen::Index drives = static_cast<Eigen::Index>(drive_names(group).size());
   for (std::size_t i = 0; i < times_.size(); ++i) {
     const std::string at = "[" + std::to_string(i) + "]";
-    require(std::isfinite(times_[i]) && (i == 0 || times_[i] > times_[i - 1]), "times" + at, times_[i],
-            "must be finite and increase");
+    require_number(times_[i], "times" + at);
+    require((i == 0 || times_[i] > times_[i - 1]), "times" + at, times_[i], "must be finite and increase");
     group.check_configuration(positions_[i], "positions" + at);
     require(drive_[i].size() == drives && drive_[i].allFinite(), "drive" + at, static_cast<double>(drive_[i].size()),
             "must be finite with " + std::to_string(drives) + " entries");

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <string>
+#include <string_view>
 
 #include "mmgrasp/core/export.hpp"
 
@@ -13,6 +14,20 @@ namespace mmgrasp {
 inline constexpr double kLargestLength = 1e6;
 /// No dimension of a shape and no edge of a cell [m] is smaller.
 inline constexpr double kSmallestLength = 1e-9;
+/// No other number is larger: moduli [Pa], costs, weights, what a solver is given. Its square and cube are finite.
+inline constexpr double kLargestNumber = 1e15;
+
+/// Throws InvalidInput naming `field`, the rule and `unit` unless value lies in (0, largest], in [0, largest], or
+/// within `largest` of 0.
+MMGRASP_EXPORT void require_positive(double value, std::string_view field, std::string_view unit = "",
+                                     double largest = kLargestLength);
+MMGRASP_EXPORT void require_not_negative(double value, std::string_view field, std::string_view unit = "",
+                                         double largest = kLargestLength);
+MMGRASP_EXPORT void require_number(double value, std::string_view field, std::string_view unit = "",
+                                   double largest = kLargestLength);
+/// require_number() of each; the message names the first that is none as field[i].
+MMGRASP_EXPORT void require_numbers(const Eigen::Ref<const Eigen::VectorXd>& values, std::string_view field,
+                                    std::string_view unit = "", double largest = kLargestLength);
 
 /// Throws InvalidInput naming `field` unless the value lies in [kSmallestLength, kLargestLength].
 MMGRASP_EXPORT void require_length(double value, const std::string& field);

@@ -4,6 +4,7 @@
 
 #include "collision/checker/checker_impl.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
 
@@ -14,13 +15,13 @@ namespace {
 void check_edge_input(const JointGroup& group, const Eigen::VectorXd& q0, const Eigen::VectorXd& q1, double step) {
   check_configuration(group, q0, "q0");
   check_configuration(group, q1, "q1");
-  require(std::isfinite(step) && step > 0, "step", step, "must be finite and > 0 [rad or m]");
+  require_positive(step, "step", "rad or m");
 }
 
 }  // namespace
 
 void CheckerOptions::check() const {
-  require(std::isfinite(padding) && padding >= 0, "padding", padding, "must be finite and >= 0 [m]");
+  require_not_negative(padding, "padding", "m");
 }
 
 std::string describe(const Contact& contact) {
@@ -100,7 +101,7 @@ DistanceResult CollisionChecker::distance_and_gradient(const Eigen::VectorXd& q)
 
 std::vector<DistanceResult> CollisionChecker::distances(const Eigen::VectorXd& q, double within) {
   check_configuration(group(), q, "q");
-  require(std::isfinite(within) && within > 0, "within", within, "must be finite and > 0 [m]");
+  require_positive(within, "within", "m");
   return impl_->engine.distances(q, within);
 }
 

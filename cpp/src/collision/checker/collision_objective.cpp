@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -60,8 +61,8 @@ class SelfDistance final : public IkObjective {
 
 std::shared_ptr<const IkObjective> make_self_distance_objective(const CollisionChecker& checker, double margin,
                                                                 double weight) {
-  require(std::isfinite(margin) && margin > 0, "margin", margin, "must be positive and finite");
-  require(std::isfinite(weight) && weight >= 0, "objective weight", weight, "must be finite and not negative");
+  require_positive(margin, "margin");
+  require_not_negative(weight, "objective weight");
   return std::make_shared<SelfDistance>(checker, margin, weight);
 }
 

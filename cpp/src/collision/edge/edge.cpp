@@ -7,17 +7,17 @@
 #include "collision/edge/edge_continuous.hpp"
 #include "mmgrasp/collision/detail/edge_steps.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/core/parallel.hpp"
 
 namespace mmgrasp {
 
 void EdgeOptions::check() const {
-  require(std::isfinite(joint_step) && joint_step > 0, "joint_step", joint_step, "must be finite and > 0 [rad or m]");
+  require_positive(joint_step, "joint_step", "rad or m");
   require(workspace_step > 0, "workspace_step", workspace_step, "must be > 0 [m]");
-  require(std::isfinite(tolerance) && tolerance > 0, "tolerance", tolerance, "must be finite and > 0 [m]");
+  require_positive(tolerance, "tolerance", "m");
   for (Eigen::Index i = 0; i < bend.size(); ++i)
-    require(std::isfinite(bend[i]) && bend[i] >= 0, "bend[" + std::to_string(i) + "]", bend[i],
-            "must be finite and >= 0 [rad or m]");
+    require_not_negative(bend[i], "bend[" + std::to_string(i) + "]", "rad or m");
 }
 
 namespace {

@@ -28,8 +28,8 @@ detail::RawMesh read_mesh(const std::string& path, std::string_view content) {
 std::shared_ptr<const TriangleMesh> detail::parse_mesh(const std::string& path, std::string_view content,
                                                        const Eigen::Vector3d& scale, MeshReport* report) {
   for (int k = 0; k < 3; ++k) {
-    require(std::isfinite(scale[k]) && scale[k] != 0, "mesh scale of '" + path + "'", scale[k],
-            "must be finite and not zero");
+    require_number(scale[k], "mesh scale of '" + path + "'");
+    require(scale[k] != 0, "mesh scale of '" + path + "'", scale[k], "must be finite and not zero");
   }
   detail::RawMesh raw = read_mesh(path, content);
   if (raw.triangles.empty()) detail::mesh_error(path, "holds no triangle");

@@ -15,6 +15,7 @@
 #include "geometry/segmentation/surface_creases.hpp"
 #include "geometry/segmentation/turn_outwards.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -152,10 +153,10 @@ void list_segments(const TriangleMesh& mesh, MeshSegmentation& out) {
 void MeshSegmentationOptions::check() const {
   diameter.check();
   require(max_clusters >= 1 && max_clusters <= 32, "max_clusters", max_clusters, "must be from 1 to 32");
-  require(smoothing >= 0 && std::isfinite(smoothing), "smoothing", smoothing, "must be 0 or more, and finite");
+  require_not_negative(smoothing, "smoothing");
   require(crease > 0 && crease < detail::kPi, "crease", crease, "must be above 0 and below pi rad");
   require(min_size > 0 && min_size < 0.5, "min_size", min_size, "must be above 0 and below 0.5");
-  require(convexity >= 0 && std::isfinite(convexity), "convexity", convexity, "must be 0 or more, and finite");
+  require_not_negative(convexity, "convexity");
   require(faces >= 1 && faces <= 1'000'000, "faces", faces, "must be from 1 to 1000000");
 }
 

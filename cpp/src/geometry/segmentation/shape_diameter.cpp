@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/core/parallel.hpp"
 #include "mmgrasp/geometry/ray_caster.hpp"
 
@@ -123,7 +124,7 @@ class DiameterMeter {
 void ShapeDiameterOptions::check() const {
   require(rays >= 1 && rays <= 1000, "rays", rays, "must be from 1 to 1000");
   require(cone > 0 && cone < detail::kPi, "cone", cone, "must be above 0 and below pi rad");
-  require(outlier > 0 && std::isfinite(outlier), "outlier", outlier, "must be positive and finite");
+  require_positive(outlier, "outlier");
   resolve_threads(threads);  // says what is wrong
 }
 

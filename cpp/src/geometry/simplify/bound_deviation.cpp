@@ -7,6 +7,7 @@
 #include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/geometry/simplify_mesh.hpp"
 
 namespace mmgrasp {
@@ -77,7 +78,7 @@ class DeviationSearch {
 
 double bound_deviation(const TriangleMesh& solid, const TriangleMesh& mesh, double limit) {
   require(solid.closed, "solid", "open", "must be a closed mesh");
-  require(std::isfinite(limit) && limit > 0, "limit", limit, "must be positive and finite");
+  require_positive(limit, "limit");
   return DeviationSearch(solid, mesh).run(limit);
 }
 

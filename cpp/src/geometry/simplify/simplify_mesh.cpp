@@ -9,6 +9,7 @@
 #include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -257,7 +258,7 @@ void decimate(const std::shared_ptr<const TriangleMesh>& mesh, double tolerance,
 }  // namespace
 
 MeshStandIn simplify_mesh(const std::shared_ptr<const TriangleMesh>& mesh, double tolerance) {
-  require(std::isfinite(tolerance) && tolerance >= 0, "mesh_tolerance", tolerance, "must be >= 0 and finite");
+  require_not_negative(tolerance, "mesh_tolerance");
   MeshStandIn found;
   found.shape = MeshShape{mesh};
   if (exact_box(*mesh, found)) return found;

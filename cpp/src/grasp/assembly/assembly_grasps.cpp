@@ -11,6 +11,7 @@
 #include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/geometry/detail/mesh_topology.hpp"
 
 namespace mmgrasp {
@@ -199,18 +200,16 @@ void AssemblyGraspOptions::check() const {
   require(facet_angle > 0 && facet_angle <= 0.5, "facet_angle", facet_angle, "must be in (0, 0.5] [rad]");
   require(parallel_angle > 0 && parallel_angle <= 0.5, "parallel_angle", parallel_angle, "must be in (0, 0.5] [rad]");
   require(directions >= 1 && directions <= 360, "directions", directions, "must be from 1 to 360");
-  const auto positive = [](const char* field, double value) {
-    require(std::isfinite(value) && value > 0, field, value, "must be a positive length [m]");
-  };
+  const auto positive = [](const char* field, double value) { require_positive(value, field, "m"); };
   positive("min_contact", min_contact);
   positive("pad_length", pad_length);
   positive("max_opening", max_opening);
   positive("finger_width", finger_width);
   positive("finger_thickness", finger_thickness);
   require(pad_length >= min_contact, "pad_length", pad_length, "must be at least min_contact [m]");
-  require(std::isfinite(clearance) && clearance >= 0, "clearance", clearance, "must be at least 0 [m]");
-  require(std::isfinite(tip_clearance) && tip_clearance >= 0, "tip_clearance", tip_clearance, "must be at least 0 [m]");
-  require(std::isfinite(palm_margin) && palm_margin >= 0, "palm_margin", palm_margin, "must be at least 0 [m]");
+  require_not_negative(clearance, "clearance", "m");
+  require_not_negative(tip_clearance, "tip_clearance", "m");
+  require_not_negative(palm_margin, "palm_margin", "m");
 }
 
 std::vector<Facet> planar_facets(const TriangleMesh& mesh, const std::vector<int>& faces, double angle) {
@@ -277,8 +276,8 @@ std::vector<AssemblyGrasp> jaw_grasps(const TriangleMesh& mesh, const std::vecto
 
 std::vector<AssemblyGrasp> centric_grasps(const CylinderFit& cylinder, const AssemblyGraspOptions& options) {
   options.check();
-  require(std::isfinite(cylinder.diameter) && cylinder.diameter > 1e-4, "diameter", cylinder.diameter,
-          "must be a length above 1e-4 [m]");
+  require_number(cylinder.diameter, "diameter", "m");
+  require(cylinder.diameter > 1e-4, "diameter", cylinder.diameter, "must be a length above 1e-4 [m]");
   require(std::isfinite(cylinder.high - cylinder.low) && cylinder.high > cylinder.low, "high", cylinder.high,
           "must be above low = " + std::to_string(cylinder.low) + " [m]");
   std::vector<AssemblyGrasp> out;

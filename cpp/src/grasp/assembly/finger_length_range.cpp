@@ -10,6 +10,7 @@
 #include "grasp/assembly/clip_polygon.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -276,9 +277,8 @@ void AssemblyOperation::check() const {
   for (std::size_t i = 0; i < motion.size(); ++i) {
     if (!is_pose(motion[i])) throw InvalidInput("motion[" + std::to_string(i) + "] is no pose");
   }
-  require(std::isfinite(insertion_force) && insertion_force >= 0, "insertion_force", insertion_force,
-          "must be at least 0 [N]");
-  if (hole && !hole->allFinite()) throw InvalidInput("hole: must be a finite point [m]");
+  require_not_negative(insertion_force, "insertion_force", "N");
+  if (hole) require_numbers(*hole, "hole", "m");
   if (insertion_force == 0) return;
   const bool straight =
       motion.size() > 1 && (motion.back().translation() - motion.end()[-2].translation()).norm() > kTouching;
@@ -288,15 +288,14 @@ void AssemblyOperation::check() const {
 void AssemblyGrasp::check() const {
   require(fingers == 2 || fingers == 3, "fingers", fingers, "must be 2 or 3");
   const auto positive = [](const char* field, double value) {
-    require(std::isfinite(value) && value > 10 * kTouching, field, value, "must be a length above 1e-5 [m]");
+    require_number(value, field, "m");
+    require(value > 10 * kTouching, field, value, "must be a length above 1e-5 [m]");
   };
   positive("opening", opening);
   positive("width", width);
   positive("thickness", thickness);
   positive("palm_radius", palm_radius);
-  const auto not_negative = [](const char* field, double value) {
-    require(std::isfinite(value) && value >= 0, field, value, "must be at least 0 [m]");
-  };
+  const auto not_negative = [](const char* field, double value) { require_not_negative(value, field, "m"); };
   not_negative("clearance", clearance);
   not_negative("contact_length", contact_length);
   not_negative("contact_width", contact_width);
@@ -306,7 +305,7 @@ void AssemblyGrasp::check() const {
 FingerLengthRange finger_length_range(const AssemblyGrasp& grasp, const AssemblyOperation& operation, double step) {
   grasp.check();
   operation.check();
-  require(std::isfinite(step) && step > 0, "step", step, "must be a positive length [m]");
+  require_positive(step, "step", "m");
   return Range(grasp, operation, step).run();
 }
 

@@ -8,6 +8,7 @@
 #include "grasp/assembly/clip_polygon.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -59,8 +60,7 @@ void KeepOffBox::check() const {
   const bool rigid =
       T_mesh_box.matrix().allFinite() && (T_mesh_box.linear() * T_mesh_box.linear().transpose()).isIdentity(1e-6);
   if (!rigid) throw InvalidInput("T_mesh_box is no pose: rotation and translation expected");
-  for (const double length : {size.x(), size.y(), size.z()})
-    require(std::isfinite(length) && length > 0, "size", length, "must be positive lengths [m]");
+  for (const double length : {size.x(), size.y(), size.z()}) require_positive(length, "size", "m");
 }
 
 SurfacePieces surface_of_faces(const TriangleMesh& mesh, const std::vector<int>& faces) {
@@ -92,7 +92,7 @@ SurfacePieces surface_in_box(const TriangleMesh& mesh, const KeepOffBox& box) {
 
 bool pads_touch(const AssemblyGrasp& grasp, const SurfacePieces& pieces, double near) {
   grasp.check();
-  require(std::isfinite(near) && near > 0, "near", near, "must be a positive length [m]");
+  require_positive(near, "near", "m");
   const Pose T_tool = grasp.T_active_tool.inverse();
   for (const Polygon& piece : pieces) {
     Polygon seen = piece;

@@ -7,6 +7,7 @@
 #include "grasp/graspability/graspability_layers.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/core/parallel.hpp"
 
 namespace mmgrasp {
@@ -150,14 +151,12 @@ class Evaluation {
 }  // namespace
 
 void GraspabilityOptions::check() const {
-  const auto not_negative = [](double value, const char* field) {
-    require(std::isfinite(value) && value >= 0, field, value, "must be zero or positive and finite [m]");
-  };
+  const auto not_negative = [](double value, const char* field) { require_not_negative(value, field, "m"); };
   require(orientations > 0 && orientations <= 360, "orientations", orientations, "must be from 1 to 360");
   require(openings > 0 && openings <= 20, "openings", openings, "must be from 1 to 20");
-  require(std::isfinite(layer_step) && layer_step > 0, "layer_step", layer_step, "must be positive and finite [m]");
-  require(std::isfinite(lowest), "lowest", lowest, "must be finite [m]");
-  require(std::isfinite(insertion) && insertion > 0, "insertion", insertion, "must be positive and finite [m]");
+  require_positive(layer_step, "layer_step", "m");
+  require_number(lowest, "lowest", "m");
+  require_positive(insertion, "insertion", "m");
   not_negative(margin, "margin");
   not_negative(smoothing, "smoothing");
   require(min_contact > 0 && min_contact <= 1, "min_contact", min_contact, "must be above 0 and at most 1");
@@ -183,7 +182,7 @@ std::vector<float> graspability_map(const HeightMap& map, const Hand& hand, doub
                                     double tip_height, const GraspabilityOptions& options) {
   options.check();
   map.check();
-  require(std::isfinite(tip_height), "tip_height", tip_height, "must be finite [m]");
+  require_number(tip_height, "tip_height", "m");
   const detail::HandRuns masks(make_hand_masks(hand, opening, angle, map.resolution, options.margin));
   const detail::TipLayer layer(map, tip_height, hand, options, masks.radius());
   detail::LayerMap result = detail::layer_map(layer, masks, in_cells(options.smoothing, map.resolution) / 2);

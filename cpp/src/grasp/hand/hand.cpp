@@ -6,6 +6,7 @@
 
 #include "grasp/hand/hand_outline.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -19,15 +20,11 @@ void check_unit_axis(const Eigen::Vector3d& axis, const std::string& field) {
   require(std::abs(axis.norm() - 1.0) <= kUnitTolerance, field + " norm", axis.norm(), "must be 1 within 1e-6");
 }
 
-void check_positive(double value, const std::string& field) {
-  require(std::isfinite(value) && value > 0, field, value, "must be positive and finite [m]");
-}
-
 }  // namespace
 
 void HandJoint::check(const std::string& field) const {
-  require(std::isfinite(closed), field + ".closed", closed, "must be finite");
-  require(std::isfinite(open), field + ".open", open, "must be finite");
+  require_number(closed, field + ".closed");
+  require_number(open, field + ".open");
 }
 
 namespace {
@@ -68,10 +65,10 @@ const char* to_string(ClosingKind kind) {
 }
 
 void HandBody::check() const {
-  check_positive(finger_thickness, "hand.body.finger_thickness");
-  check_positive(finger_length, "hand.body.finger_length");
-  check_positive(palm_length, "hand.body.palm_length");
-  check_positive(palm_width, "hand.body.palm_width");
+  require_length(finger_thickness, "hand.body.finger_thickness");
+  require_length(finger_length, "hand.body.finger_length");
+  require_length(palm_length, "hand.body.palm_length");
+  require_length(palm_width, "hand.body.palm_width");
 }
 
 void Hand::check() const {
@@ -80,13 +77,12 @@ void Hand::check() const {
   const double dot = approach.dot(closing);
   require(std::abs(dot) <= kUnitTolerance, "hand.approach . hand.closing", dot,
           "the two axes must be orthogonal within 1e-6");
-  check_positive(max_opening, "hand.max_opening");
+  require_length(max_opening, "hand.max_opening");
   require(min_opening >= 0 && min_opening < max_opening, "hand.min_opening", min_opening,
           "must be in [0, max_opening) [m]");
-  check_positive(finger_depth, "hand.finger_depth");
-  check_positive(finger_width, "hand.finger_width");
-  require(std::isfinite(clearance) && clearance >= 0, "hand.clearance", clearance,
-          "must be zero or positive and finite [m]");
+  require_length(finger_depth, "hand.finger_depth");
+  require_length(finger_width, "hand.finger_width");
+  require_not_negative(clearance, "hand.clearance", "m");
   check_joints(joints);
   check_openings(openings, min_opening, max_opening);
   const std::vector<std::string> known = groups();

@@ -6,6 +6,7 @@
 #include "grasp/hand/finger_shapes.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/grasp/hand.hpp"
 #include "mmgrasp/robot/robot.hpp"
 
@@ -314,7 +315,7 @@ class Reader {
 void HandReading::check() const {
   for (const auto& [name, axis] : {std::pair("approach", approach), std::pair("closing", closing)})
     require(!axis || std::abs(axis->norm() - 1) <= 1e-6, name, axis ? axis->norm() : 1, "must be a unit vector");
-  require(std::isfinite(clearance) && clearance >= 0, "clearance", clearance, "must be zero or positive [m]");
+  require_not_negative(clearance, "clearance", "m");
   require(postures >= 2 && postures <= 1000, "postures", postures, "must be from 2 to 1000");
 }
 

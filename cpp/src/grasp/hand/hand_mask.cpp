@@ -8,6 +8,7 @@
 #include "grasp/hand/row_spans.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -70,9 +71,9 @@ void MaskImage::check(const char* field) const {
 
 HandMasks make_hand_masks(const Hand& hand, double opening, double angle, double resolution, double margin) {
   hand.check();
-  require(std::isfinite(angle), "angle", angle, "must be finite [rad]");
-  require(std::isfinite(resolution) && resolution > 0, "resolution", resolution, "must be positive and finite [m]");
-  require(std::isfinite(margin) && margin >= 0, "margin", margin, "must be zero or positive [m]");
+  require_number(angle, "angle", "rad");
+  require_positive(resolution, "resolution", "m");
+  require_not_negative(margin, "margin", "m");
   const detail::HandOutline o(hand, opening);
   // A cell is touched when its centre lies within half its diagonal.
   const double grow = margin + resolution * std::sqrt(0.5);

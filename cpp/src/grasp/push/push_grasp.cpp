@@ -5,6 +5,7 @@
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -12,11 +13,11 @@ namespace {
 constexpr double kGravity = 9.81;  // [m/s^2]
 
 void check_positive(double value, const char* field) {
-  require(std::isfinite(value) && value > 0, field, value, "must be finite and positive");
+  require_positive(value, field);
 }
 
 void check_not_negative(double value, const char* field) {
-  require(std::isfinite(value) && value >= 0, field, value, "must be finite and not negative");
+  require_not_negative(value, field);
 }
 
 double closing_time(const PushGraspProblem& p) {
@@ -93,8 +94,8 @@ double probability(const PushGraspProblem& p, double start) {
 
 void PushGraspProblem::check() const {
   check_positive(object_width, "object_width");
-  require(std::isfinite(opening) && opening > object_width, "opening", opening,
-          "must be finite and wider than object_width");
+  require_number(opening, "opening");
+  require(opening > object_width, "opening", opening, "must be finite and wider than object_width");
   check_positive(closing_speed, "closing_speed");
   check_positive(tool_speed, "tool_speed");
   check_positive(finger_length, "finger_length");
@@ -125,7 +126,7 @@ PushGraspProblem push_grasp_problem(const Hand& hand, double object_width) {
 
 ClosingOutcome closing_outcome(const PushGraspProblem& problem, double start) {
   problem.check();
-  require(std::isfinite(start), "start", start, "must be finite");
+  require_number(start, "start");
   const PushGraspProblem& p = problem;
   ClosingOutcome out;
   out.start = start;

@@ -184,13 +184,13 @@ class Placer {
 void PlacementOptions::check() const {
   require(count >= 0, "count", count, "must be zero or positive");
   require_within(draws, 1, 1'000'000, "draws", "");
-  require(std::isfinite(clearance) && clearance > 0, "clearance", clearance, "must be positive and finite [m]");
+  require_positive(clearance, "clearance", "m");
 }
 
 std::vector<LinkShape> tray_shapes(const Vector3d& size, double wall) {
-  for (int k = 0; k < 3; ++k)
-    require(std::isfinite(size[k]) && size[k] > 0, "tray_size", size[k], "must be positive and finite [m]");
-  require(std::isfinite(wall) && wall > 0 && 2 * wall < size.head<2>().minCoeff() && wall < size.z(), "wall", wall,
+  for (int k = 0; k < 3; ++k) require_positive(size[k], "tray_size", "m");
+  require_number(wall, "wall", "m");
+  require(wall > 0 && 2 * wall < size.head<2>().minCoeff() && wall < size.z(), "wall", wall,
           "must be positive and leave room between the walls [m]");
   const auto box = [](double x, double y, double z, const Vector3d& at) {
     LinkShape shape;

@@ -7,6 +7,7 @@
 #include "grasp/sampling/contact_pairs.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -150,8 +151,8 @@ void GraspSamplerOptions::check() const {
   require(candidates <= kMostCandidates, "approaches", approaches,
           "must be fewer: approaches times mesh_samples, or times positions squared, must be at most 1e6 candidates");
   require(max_grasps > 0, "max_grasps", max_grasps, "must be positive");
-  require(std::isfinite(friction) && friction > 0, "friction", friction, "must be positive and finite");
-  require(std::isfinite(standoff), "standoff", standoff, "must be finite [m]");
+  require_positive(friction, "friction");
+  require_number(standoff, "standoff", "m");
 }
 
 SampledGrasps sample_grasps(const std::vector<LinkShape>& object, const Hand& hand,

@@ -6,6 +6,7 @@
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/core/random.hpp"
 
 namespace mmgrasp {
@@ -71,8 +72,7 @@ void ContactPatchOptions::check() const {
   require(rays >= 2 && rays <= 50, "rays", rays, "must be from 2 to 50");
   require(min_hits > 0 && min_hits <= 1, "min_hits", min_hits, "must be above 0 and at most 1");
   require(min_inliers > 0 && min_inliers <= 1, "min_inliers", min_inliers, "must be above 0 and at most 1");
-  require(plane_tolerance > 0 && std::isfinite(plane_tolerance), "plane_tolerance", plane_tolerance,
-          "must be positive and finite [m]");
+  require_positive(plane_tolerance, "plane_tolerance", "m");
 }
 
 PadRays pad_rays(const FingerPad& pad, const Pose& T_world_hand, const ContactPatchOptions& options) {

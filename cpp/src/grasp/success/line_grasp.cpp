@@ -21,7 +21,7 @@ double standard_distribution(double z) {
 }  // namespace
 
 void LineGrasp::check() const {
-  require(std::isfinite(max_opening) && max_opening > 0, "max_opening", max_opening, "must be positive and finite [m]");
+  require_positive(max_opening, "max_opening", "m");
   require(width > 0 && width < max_opening, "width", width, "must be positive and below max_opening [m]");
 }
 
@@ -37,8 +37,9 @@ double LineGrasp::success(double opening, double position, double object) const 
 double LineGrasp::probability(double opening, double position, double mean, double sigma) const {
   check();
   require(opening >= 0 && opening <= max_opening, "opening", opening, "must be in [0, max_opening] [m]");
-  require(std::isfinite(position) && std::isfinite(mean), "position", position, "must be finite [m]");
-  require(std::isfinite(sigma) && sigma > 0, "sigma", sigma, "must be positive and finite [m]");
+  require_number(position, "position", "m");
+  require(std::isfinite(mean), "position", position, "must be finite [m]");
+  require_positive(sigma, "sigma", "m");
   const double room = (opening - width) / 2, most = (max_opening - width) / 2;
   if (room <= 0) return 0;
   // Each side is the integral of a straight line times the normal density.

@@ -6,6 +6,7 @@
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -36,7 +37,7 @@ std::pair<Vector3d, Vector3d> contact_line(const std::vector<ContactPatch>& patc
 }  // namespace
 
 void SuccessOptions::check() const {
-  require(friction > 0 && std::isfinite(friction), "friction", friction, "must be positive and finite");
+  require_positive(friction, "friction");
   double sum = 0;
   for (const auto& [weight, field] : {std::pair{angle_weight, "angle_weight"},
                                       {placement_weight, "placement_weight"},
@@ -46,9 +47,8 @@ void SuccessOptions::check() const {
     sum += weight;
   }
   require(std::abs(sum - 1) <= 1e-9, "sum of the four weights", sum, "must be 1");
-  require(placement_scale > 0 && std::isfinite(placement_scale), "placement_scale", placement_scale,
-          "must be positive and finite [m]");
-  require(max_sigma > 0 && std::isfinite(max_sigma), "max_sigma", max_sigma, "must be positive and finite [m]");
+  require_positive(placement_scale, "placement_scale", "m");
+  require_positive(max_sigma, "max_sigma", "m");
 }
 
 double angle_criterion(const std::vector<ContactPatch>& patches, double friction) {
@@ -85,9 +85,8 @@ double certainty_criterion(const std::vector<ContactPatch>& patches, double max_
 GraspSuccess evaluate_success(const std::vector<ContactPatch>& patches, const ObjectExtent& object, double offset,
                               const SuccessOptions& options) {
   options.check();
-  require(object.longest > 0 && std::isfinite(object.longest), "object.longest", object.longest,
-          "must be positive and finite [m]");
-  require(offset >= 0 && std::isfinite(offset), "offset", offset, "must be zero or positive and finite [m]");
+  require_positive(object.longest, "object.longest", "m");
+  require_not_negative(offset, "offset", "m");
   GraspSuccess out;
   out.angle = angle_criterion(patches, options.friction);
   out.placement = placement_criterion(patches, offset, options.placement_scale);

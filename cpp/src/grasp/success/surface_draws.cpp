@@ -5,6 +5,7 @@
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/core/random.hpp"
 
 namespace mmgrasp {
@@ -55,8 +56,7 @@ SdfHits moved(const SdfHits& mean, const Eigen::Matrix3Xd& directions, const Smo
 
 void SurfaceDrawOptions::check() const {
   require(draws > 0 && draws <= 1000000, "draws", draws, "must be from 1 to 1000000");
-  require(correlation_length > 0 && std::isfinite(correlation_length), "correlation_length", correlation_length,
-          "must be positive and finite [m]");
+  require_positive(correlation_length, "correlation_length", "m");
 }
 
 DrawnSuccess draw_success(const std::vector<SdfHits>& hits, const std::vector<PadRays>& rays, double reach,

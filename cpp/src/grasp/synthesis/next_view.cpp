@@ -6,6 +6,7 @@
 #include "grasp/synthesis/map_surface.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/core/parallel.hpp"
 #include "mmgrasp/core/random.hpp"
 #include "mmgrasp/geometry/ray_caster.hpp"
@@ -154,7 +155,7 @@ void imagine(const ProbabilisticSdf& map, const HandModel& hand, DepthImage imag
 
 void NextViewOptions::check() const {
   require(candidates >= 1 && candidates <= 1000000, "candidates", candidates, "must be in [1, 1000000]");
-  require(std::isfinite(distance) && distance > 0, "distance", distance, "must be positive and finite [m]");
+  require_positive(distance, "distance", "m");
   require(min_elevation >= -detail::kPi / 2 && min_elevation < max_elevation, "min_elevation", min_elevation,
           "must be from -pi/2 to below max_elevation [rad]");
   require(max_elevation <= detail::kPi / 2, "max_elevation", max_elevation, "must be at most pi/2 [rad]");

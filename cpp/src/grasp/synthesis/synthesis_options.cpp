@@ -5,6 +5,7 @@
 
 #include "grasp/synthesis/evaluate_grasp.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/core/parallel.hpp"
 #include "mmgrasp/grasp/synthesize_grasps.hpp"
 
@@ -39,14 +40,12 @@ void detail::add_verdict(Verdict verdict, SynthesisCounts& counts) {
 }
 
 void SynthesisOptions::check() const {
-  const auto not_negative = [](double value, const char* field) {
-    require(std::isfinite(value) && value >= 0, field, value, "must be zero or positive and finite");
-  };
+  const auto not_negative = [](double value, const char* field) { require_not_negative(value, field); };
   require(samples > 0 && samples <= 1000000, "samples", samples, "must be from 1 to 1000000");
   require(refined > 0, "refined", refined, "must be positive");
   not_negative(shift, "shift");
   require(max_tilt >= 0 && max_tilt <= 3.2, "max_tilt", max_tilt, "must be in [0, pi] [rad]");
-  if (table) require(std::isfinite(*table), "table", *table, "must be finite [m]");
+  if (table) require_number(*table, "table", "m");
   not_negative(table_tolerance, "table_tolerance");
   if (object) {
     const bool sound = !object->isEmpty() && object->min().allFinite() && object->max().allFinite();

@@ -119,8 +119,9 @@ void OccupancyOptions::check() const {
 }
 
 void OccupancyObstacleOptions::check() const {
-  const bool finite = bounds.isEmpty() || (bounds.min().allFinite() && bounds.max().allFinite());
-  require(finite, "bounds", "infinite or NaN", "must be finite [m]");
+  if (bounds.isEmpty()) return;  // none
+  require_numbers(bounds.min(), "bounds[0]", "m");
+  require_numbers(bounds.max(), "bounds[1]", "m");
 }
 
 OccupancyMap::OccupancyMap(const OccupancyOptions& options) {

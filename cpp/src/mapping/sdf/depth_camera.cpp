@@ -4,6 +4,7 @@
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
 
@@ -19,7 +20,7 @@ double DepthNoise::sigma(double depth, double incidence) const {
 void DepthNoise::check() const {
   const double fields[] = {constant, linear, quadratic, slant, slant_power};
   const char* names[] = {"noise.constant", "noise.linear", "noise.quadratic", "noise.slant", "noise.slant_power"};
-  for (int k = 0; k < 5; ++k) require(std::isfinite(fields[k]), names[k], fields[k], "must be finite");
+  for (int k = 0; k < 5; ++k) require_number(fields[k], names[k]);
   require(slant >= 0, "noise.slant", slant, "must be zero or positive [m]");
   // Above zero in front of the camera: at the lens, far away, or at the vertex between.
   const bool somewhere = constant > 0 || quadratic > 0 || (quadratic == 0 && linear > 0) ||
@@ -37,7 +38,7 @@ void DepthNoise::check(double nearest, double farthest) const {
 }
 
 DepthNoise constant_noise(double sigma) {
-  require(std::isfinite(sigma) && sigma > 0, "sigma", sigma, "must be positive and finite [m]");
+  require_positive(sigma, "sigma", "m");
   return {sigma};
 }
 
@@ -46,10 +47,9 @@ DepthNoise structured_light_noise() {
 }
 
 DepthNoise stereo_noise(double focal, double baseline, double disparity_sigma) {
-  require(std::isfinite(focal) && focal > 0, "focal", focal, "must be positive and finite [pixels]");
-  require(std::isfinite(baseline) && baseline > 0, "baseline", baseline, "must be positive and finite [m]");
-  require(std::isfinite(disparity_sigma) && disparity_sigma > 0, "disparity_sigma", disparity_sigma,
-          "must be positive and finite [pixels]");
+  require_positive(focal, "focal", "pixels");
+  require_positive(baseline, "baseline", "m");
+  require_positive(disparity_sigma, "disparity_sigma", "pixels");
   return {0, 0, disparity_sigma / (focal * baseline)};
 }
 
@@ -60,18 +60,15 @@ DepthNoise time_of_flight_noise() {
 void DepthCamera::check() const {
   require(!name.empty(), "camera.name", "\"\"", "must not be empty");
   intrinsics.check();
-  require(std::isfinite(intrinsics.farthest), "camera.farthest", intrinsics.farthest, "must be finite");
+  require_number(intrinsics.farthest, "camera.farthest");
   noise.check(intrinsics.nearest, intrinsics.farthest);
-  require(std::isfinite(systematic) && systematic >= 0, "camera.systematic", systematic,
-          "must be zero or positive and finite [m]");
-  require(std::isfinite(systematic_scale) && systematic_scale >= 0, "camera.systematic_scale", systematic_scale,
-          "must be zero or positive and finite");
+  require_not_negative(systematic, "camera.systematic", "m");
+  require_not_negative(systematic_scale, "camera.systematic_scale");
 }
 
 FrameUncertainty FrameUncertainty::of_pose(double translation, double rotation) {
-  require(std::isfinite(translation) && translation >= 0, "translation", translation,
-          "must be zero or positive and finite [m]");
-  require(std::isfinite(rotation) && rotation >= 0, "rotation", rotation, "must be zero or positive and finite [rad]");
+  require_not_negative(translation, "translation", "m");
+  require_not_negative(rotation, "rotation", "rad");
   FrameUncertainty out;
   out.pose_covariance.diagonal() << Eigen::Vector3d::Constant(translation * translation),
       Eigen::Vector3d::Constant(rotation * rotation);

@@ -9,6 +9,7 @@
 #include "mapping/sdf/frame_planes.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/core/parallel.hpp"
 
 namespace mmgrasp {
@@ -285,11 +286,9 @@ class Registration {
 void RegistrationOptions::check() const {
   require(max_points >= kFewest, "max_points", max_points, "must be at least 100");
   require(max_iterations > 0, "max_iterations", max_iterations, "must be positive");
-  require(std::isfinite(max_distance) && max_distance > 0, "max_distance", max_distance,
-          "must be positive and finite [m]");
+  require_positive(max_distance, "max_distance", "m");
   require(min_overlap > 0 && min_overlap <= 1, "min_overlap", min_overlap, "must be above 0 and at most 1");
-  require(std::isfinite(max_correction) && max_correction > 0, "max_correction", max_correction,
-          "must be positive and finite");
+  require_positive(max_correction, "max_correction");
   require(min_observability >= 0 && min_observability < 1, "min_observability", min_observability,
           "must be from 0 to below 1");
   resolve_threads(threads);

@@ -37,8 +37,9 @@ void by_pieces(Eigen::Index count, Eigen::Index fewest, Eigen::Index most, int t
 }  // namespace
 
 void SdfOptions::check() const {
-  require(std::isfinite(voxel) && voxel > 0, "voxel", voxel, "must be positive and finite [m]");
-  require(std::isfinite(truncation) && truncation >= 3 * voxel * (1 - 1e-9), "truncation", truncation,
+  require_positive(voxel, "voxel", "m");
+  require_number(truncation, "truncation", "m");
+  require(truncation >= 3 * voxel * (1 - 1e-9), "truncation", truncation,
           "must be finite and at least three voxels [m]");
   require(truncation <= 100 * voxel, "truncation", truncation,
           "must be at most 100 voxels: finer ones take too much memory [m]");
@@ -47,7 +48,7 @@ void SdfOptions::check() const {
   require(outlier_gate == 0 || (std::isfinite(outlier_gate) && outlier_gate >= 3), "outlier_gate", outlier_gate,
           "must be 0 or at least 3 standard deviations and finite");
   require(persistence >= 1 && persistence <= 254, "persistence", persistence, "must be from 1 to 254 frames");
-  require(std::isfinite(max_memory) && max_memory > 0, "max_memory", max_memory, "must be positive and finite [bytes]");
+  require_positive(max_memory, "max_memory", "bytes", kLargestNumber);
   resolve_threads(threads);
 }
 
@@ -134,10 +135,11 @@ SdfPoints ProbabilisticSdf::points(const Monitor& monitor) const {
 }
 
 void SdfObstacleOptions::check() const {
-  require(std::isfinite(sigmas) && sigmas >= 0, "sigmas", sigmas, "must be zero or positive and finite");
+  require_not_negative(sigmas, "sigmas");
   require(unknown != UnknownSpace::unknown, "unknown", "unknown", "must be free or occupied");
-  const bool finite = bounds.isEmpty() || (bounds.min().allFinite() && bounds.max().allFinite());
-  require(finite, "bounds", "infinite or NaN", "must be finite [m]");
+  if (bounds.isEmpty()) return;  // none
+  require_numbers(bounds.min(), "bounds[0]", "m");
+  require_numbers(bounds.max(), "bounds[1]", "m");
 }
 
 std::vector<Voxels> ProbabilisticSdf::obstacle_cells(const SdfObstacleOptions& options) const {

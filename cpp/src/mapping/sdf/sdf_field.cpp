@@ -3,12 +3,13 @@
 #include "mapping/sdf/sdf_sampler.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp::detail {
 
 SdfField::SdfField(std::shared_ptr<const SdfGrid> grid, double sigmas, UnknownSpace unknown)
     : grid_(std::move(grid)), sigmas_(sigmas), unknown_(unknown) {
-  require(std::isfinite(sigmas) && sigmas >= 0, "sigmas", sigmas, "must be zero or positive and finite");
+  require_not_negative(sigmas, "sigmas");
 }
 
 DistanceFieldProperties SdfField::properties() const {

@@ -170,15 +170,15 @@ class ObjectSegmenter {
 
 void ObjectSegmentationOptions::check() const {
   require(leaf >= 1e-5 && leaf <= 1, "leaf", leaf, "must be in [1e-5, 1] [m]");
-  require(std::isfinite(plane_tolerance) && plane_tolerance > 0, "plane_tolerance", plane_tolerance,
-          "must be positive and finite [m]");
-  require(up.allFinite(), "up", "not finite", "must be a direction, or zero for any plane");
+  require_positive(plane_tolerance, "plane_tolerance", "m");
+  require_numbers(up, "up");
   require(up_angle > 0 && up_angle <= kHalfPi, "up_angle", up_angle, "must be above 0 and at most pi/2 [rad]");
   require(min_plane_share >= 0 && min_plane_share <= 1, "min_plane_share", min_plane_share, "must be in [0, 1]");
-  require(std::isfinite(max_height) && max_height > plane_tolerance, "max_height", max_height,
-          "must be finite and more than plane_tolerance [m]");
-  require(std::isfinite(max_beside) && max_beside >= 0, "max_beside", max_beside, "must be zero or positive [m]");
-  require(std::isfinite(patch) && patch >= 2 * leaf, "patch", patch, "must be finite and at least 2 leaf [m]");
+  require_number(max_height, "max_height", "m");
+  require(max_height > plane_tolerance, "max_height", max_height, "must be finite and more than plane_tolerance [m]");
+  require_not_negative(max_beside, "max_beside", "m");
+  require_number(patch, "patch", "m");
+  require(patch >= 2 * leaf, "patch", patch, "must be finite and at least 2 leaf [m]");
   require(concavity > 0 && concavity < 2 * kHalfPi, "concavity", concavity, "must be in (0, pi) [rad]");
   require(min_points > 0, "min_points", min_points, "must be positive");
   require_within(plane_iterations, 1, 1e6, "plane_iterations", "");
@@ -190,10 +190,10 @@ ObjectSegmentation segment_objects(const Matrix3Xd& points, const Matrix3Xd& nor
   options.check();
   require(normals.cols() == 0 || normals.cols() == points.cols(), "normals", static_cast<double>(normals.cols()),
           "must be one a point, " + std::to_string(points.cols()));
-  require(eye.allFinite(), "eye", "not finite", "must be a point [m]");
+  require_numbers(eye, "eye", "m");
   if (plane) {
     require(std::abs(plane->normal.norm() - 1) <= 1e-6, "plane.normal", plane->normal.norm(), "must have unit length");
-    require(std::isfinite(plane->offset), "plane.offset", plane->offset, "must be finite [m]");
+    require_number(plane->offset, "plane.offset", "m");
   }
   return ObjectSegmenter(points, normals, options, eye).segment(plane);
 }

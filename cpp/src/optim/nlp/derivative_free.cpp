@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "optim/nlp/nlopt_search.hpp"
 
 namespace mmgrasp {
@@ -33,8 +34,7 @@ DerivativeFreeSolver::~DerivativeFreeSolver() = default;
 
 void DerivativeFreeOptions::check() const {
   require(tolerance > 0 && tolerance < 1, "tolerance", tolerance, "must be in (0, 1)");
-  require(constraint_tolerance >= 0 && std::isfinite(constraint_tolerance), "constraint_tolerance",
-          constraint_tolerance, "must be zero or positive");
+  require_not_negative(constraint_tolerance, "constraint_tolerance", "", kLargestNumber);
   require(max_evaluations > 0, "max_evaluations", max_evaluations, "must be positive");
   require(time_limit > 0, "time_limit", time_limit, "must be positive");
 }
@@ -49,7 +49,7 @@ DerivativeFreeResult DerivativeFreeSolver::solve(const DerivativeFreeProblem& pr
           "must have " + std::to_string(bounds.lower.size()) + " entries, one per variable");
   require(guess.size() > 0, "guess", 0.0, "must have at least one entry");
   for (Eigen::Index i = 0; i < guess.size(); ++i) {
-    require(std::isfinite(guess[i]), at("guess", i), guess[i], "must be finite");
+    require_number(guess[i], at("guess", i), "", kLargestNumber);
     // Also refuses NaN.
     if (!(bounds.lower[i] <= bounds.upper[i]))
       require(false, at("bounds", i),

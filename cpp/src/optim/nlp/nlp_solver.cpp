@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "optim/nlp/nlp_backends.hpp"
 
 namespace mmgrasp {
@@ -46,12 +47,11 @@ NlpSolver::~NlpSolver() = default;
 
 void NlpOptions::check() const {
   require(tolerance > 0 && tolerance < 1, "tolerance", tolerance, "must be in (0, 1)");
-  require(constraint_tolerance > 0 && std::isfinite(constraint_tolerance), "constraint_tolerance", constraint_tolerance,
-          "must be positive");
+  require_positive(constraint_tolerance, "constraint_tolerance", "", kLargestNumber);
   require(max_iterations > 0, "max_iterations", max_iterations, "must be positive");
   require(time_limit > 0, "time_limit", time_limit, "must be positive");
-  require(barrier >= 0 && std::isfinite(barrier), "barrier", barrier, "must be at least 0");
-  require(warm_start >= 0 && std::isfinite(warm_start), "warm_start", warm_start, "must be at least 0");
+  require_not_negative(barrier, "barrier");
+  require_not_negative(warm_start, "warm_start");
 }
 
 NlpResult NlpSolver::solve(NonlinearProblem& problem, const Eigen::VectorXd& guess, const NlpOptions& options,

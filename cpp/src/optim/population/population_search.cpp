@@ -4,6 +4,7 @@
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "optim/population/population_run.hpp"
 
 namespace mmgrasp {
@@ -34,8 +35,7 @@ void PopulationProblem::check() const {
             "bounds must be finite, lower = " + std::to_string(v.lower) + " not above upper");
     const bool whole = std::floor(v.lower) == v.lower && std::floor(v.upper) == v.upper;
     require(v.kind == SearchVariable::Kind::real || whole, field + ".lower", v.lower, "bounds must be whole numbers");
-    require(std::isfinite(v.mutation) && v.mutation >= 0, field + ".mutation", v.mutation,
-            "must be positive, or zero for a share of the range");
+    require_not_negative(v.mutation, field + ".mutation");
   }
 }
 
@@ -60,8 +60,8 @@ void PopulationOptions::check() const {
   share(mutation_rate, "mutation_rate", true);
   share(mutation_size, "mutation_size", false);
   share(connectivity, "connectivity", false);
-  require(std::isfinite(inertia) && inertia >= 0, "inertia", inertia, "must be zero or positive");
-  require(std::isfinite(acceleration) && acceleration > 0, "acceleration", acceleration, "must be positive");
+  require_not_negative(inertia, "inertia");
+  require_positive(acceleration, "acceleration");
 }
 
 double PopulationSearch::Run::draw(const VectorXd& x, int i) {

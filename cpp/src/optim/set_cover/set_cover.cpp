@@ -203,8 +203,7 @@ void SetCoverProblem::check() const {
   require(costs.size() == sets.size(), "costs", static_cast<double>(costs.size()),
           "must have one entry per set (" + std::to_string(sets.size()) + ")");
   for (std::size_t s = 0; s < costs.size(); ++s) {
-    require(std::isfinite(costs[s]) && costs[s] > 0, "costs[" + std::to_string(s) + "]", costs[s],
-            "must be finite and > 0");
+    require_positive(costs[s], "costs[" + std::to_string(s) + "]", "", kLargestNumber);
   }
 }
 

@@ -8,6 +8,7 @@
 #include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/optim/tour.hpp"
 
 namespace mmgrasp {
@@ -274,8 +275,7 @@ SharedTours share_stops(const Eigen::MatrixXd& drive_times, const std::vector<do
     }
   }
   for (std::size_t stop = 0; stop < stop_times.size(); ++stop) {
-    require(std::isfinite(stop_times[stop]) && stop_times[stop] >= 0, "stop_times[" + std::to_string(stop) + "]",
-            stop_times[stop], "must be finite and not negative");
+    require_not_negative(stop_times[stop], "stop_times[" + std::to_string(stop) + "]", "", kLargestNumber);
   }
   return Sharing(drive_times, stop_times, robots).run();
 }

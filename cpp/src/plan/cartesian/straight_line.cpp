@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "plan/motion/beyond_limits.hpp"
 #include "plan/motion/steered_base.hpp"
 
@@ -160,9 +161,7 @@ class LineFollower {
 }  // namespace
 
 void StraightLineOptions::check() const {
-  const auto positive = [](double value, const char* field) {
-    require(std::isfinite(value) && value > 0, field, value, "must be finite and > 0");
-  };
+  const auto positive = [](double value, const char* field) { require_positive(value, field); };
   positive(position_step, "position_step");
   positive(rotation_step, "rotation_step");
   positive(jump_threshold, "jump_threshold");

@@ -8,6 +8,7 @@
 #include "mmgrasp/collision/detail/checker_difference.hpp"
 #include "mmgrasp/core/detail/near_name.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/core/parallel.hpp"
 #include "plan/manipulation/common/manipulation_planner.hpp"
 #include "plan/manipulation/least_grasp_cost.hpp"
@@ -128,7 +129,7 @@ void ManipulationOptions::check() const {
   require(ik_solutions > 0, "ik_solutions", ik_solutions, "must be > 0");
   require(first_grasps >= 0, "first_grasps", first_grasps, "must be >= 0");
   require(time_limit > 0, "time_limit", time_limit, "must be > 0 [s]");
-  require(std::isfinite(max_length) && max_length >= 0, "max_length", max_length, "must be finite and >= 0");
+  require_not_negative(max_length, "max_length");
   require(max_length == 0 || !(rrt.goal_cost > 0), "goal_cost", rrt.goal_cost, "must be left out with max_length");
   require(prm.roadmap.joint_weights.empty(), "prm.roadmap.joint_weights", "given",
           "must be left out: joint_weights of all hold");

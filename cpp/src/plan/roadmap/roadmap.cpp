@@ -8,6 +8,7 @@
 #include "mmgrasp/core/detail/ball_volume.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/core/parallel.hpp"
 #include "mmgrasp/core/random.hpp"
 #include "plan/roadmap/roadmap_data.hpp"
@@ -22,7 +23,7 @@ constexpr double kConnectedShare = 0.99;  // Share of all vertices in the larges
 
 void RoadmapOptions::check() const {
   require(vertices >= 2 && vertices <= 10'000'000, "vertices", vertices, "must be in [2, 10000000]");
-  require(std::isfinite(gamma) && gamma >= 0, "gamma", gamma, "must be finite and >= 0");
+  require_not_negative(gamma, "gamma");
   require(neighbours >= 0, "neighbours", neighbours, "must be >= 0");
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "plan/timing/blended_path.hpp"
 #include "plan/timing/jerk_limit.hpp"
 #include "plan/timing/path_deviation.hpp"
@@ -28,8 +29,7 @@ void check_limits(const Eigen::VectorXd& limits, Eigen::Index size, const std::s
   require(limits.size() == size, field, static_cast<double>(limits.size()),
           "must have one entry per joint (" + std::to_string(size) + ")");
   for (Eigen::Index i = 0; i < size; ++i) {
-    require(std::isfinite(limits[i]) && limits[i] > 0, field + "[" + std::to_string(i) + "]", limits[i],
-            "must be finite and > 0");
+    require_positive(limits[i], field + "[" + std::to_string(i) + "]");
   }
 }
 
@@ -40,7 +40,7 @@ void check_path(const JointPath& path) {
     const std::string field = "path.waypoints[" + std::to_string(i) + "]";
     require(path.waypoints[i].size() == size, field, static_cast<double>(path.waypoints[i].size()),
             "must have as many values as the first waypoint (" + std::to_string(size) + ")");
-    require(path.waypoints[i].allFinite(), field, "NaN or infinity", "must be finite");
+    require_numbers(path.waypoints[i], field, "rad or m");
   }
 }
 
@@ -222,9 +222,8 @@ JointTrajectory free_trajectory(CollisionChecker& checker, const TimedPath& time
 }  // namespace
 
 void TimingOptions::check() const {
-  require(std::isfinite(max_deviation) && max_deviation >= 0, "max_deviation", max_deviation,
-          "must be finite and >= 0");
-  require(std::isfinite(sample_period) && sample_period > 0, "sample_period", sample_period, "must be finite and > 0");
+  require_not_negative(max_deviation, "max_deviation");
+  require_positive(sample_period, "sample_period");
   if (jerk_limits.size() > 0) check_limits(jerk_limits, jerk_limits.size(), "jerk_limits");
 }
 
@@ -255,7 +254,7 @@ JointTrajectory time_parameterize_free(CollisionChecker& checker, const JointPat
                                        double joint_step, const Monitor& monitor) {
   options.check();
   check_path(path);
-  require(std::isfinite(joint_step) && joint_step > 0, "joint_step", joint_step, "must be finite and > 0");
+  require_positive(joint_step, "joint_step");
   const JointGroup& group = checker.group();
   group.check_configuration(path.waypoints.front(), "path.waypoints[0]");
   check_limits(group.velocity_limits(), group.size(), "velocity_limits");

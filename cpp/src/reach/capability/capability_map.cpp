@@ -7,6 +7,7 @@
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/hash.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/core/parallel.hpp"
 #include "reach/capability/capability_data.hpp"
 
@@ -22,12 +23,12 @@ double steps_along(const CapabilityOptions& options, int axis) {
 }  // namespace
 
 void CapabilityOptions::check() const {
-  require(std::isfinite(voxel) && voxel > 0, "voxel", voxel, "must be positive and finite [m]");
+  require_positive(voxel, "voxel", "m");
   double voxels = 1;
   for (int axis = 0; axis < 3; ++axis) {
-    require(std::isfinite(lower[axis]), "lower", lower[axis], "must be finite [m]");
-    require(std::isfinite(upper[axis]) && upper[axis] > lower[axis], "upper", upper[axis],
-            "must be finite and above lower [m]");
+    require_number(lower[axis], "lower", "m");
+    require_number(upper[axis], "upper", "m");
+    require(upper[axis] > lower[axis], "upper", upper[axis], "must be finite and above lower [m]");
     const double steps = steps_along(*this, axis);
     require(std::abs(steps - std::round(steps)) < 1e-6 * steps + 1e-9 && steps > 0.5, "upper", upper[axis],
             "must be a whole number of voxels above lower");
@@ -36,11 +37,12 @@ void CapabilityOptions::check() const {
   require(poses >= 1 && poses <= 10000, "poses", poses, "must be in [1, 10000]");
   require(voxels * poses <= kMostVoxels * 100, "voxel", voxel, "makes more than 1e10 tool poses");
   require(rolls >= 1 && rolls <= poses && poses % rolls == 0, "rolls", rolls, "must divide poses");
-  require(approach.allFinite() && approach.norm() > 1e-9, "approach", approach.norm(), "must be finite and not zero");
+  require_numbers(approach, "approach");
+  require(approach.norm() > 1e-9, "approach", approach.norm(), "must not be zero");
   require(samples >= 0 && samples <= 10000, "samples", samples, "must be in [0, 10000]");
   require(sweeps >= 0, "sweeps", sweeps, "must not be negative");
   require(restarts >= 0, "restarts", restarts, "must not be negative");
-  require(std::isfinite(padding) && padding >= 0, "padding", padding, "must be finite and >= 0 [m]");
+  require_not_negative(padding, "padding", "m");
   resolve_threads(threads);  // says what is wrong
 }
 
@@ -246,7 +248,7 @@ double CapabilityMap::score(const Poses& T_world_tip, const Pose& T_world_root, 
 
 BaseDistance best_base_distance(const CapabilityMap& map, const Poses& T_world_tip, double heading,
                                 const std::vector<double>& distances, double cone) {
-  require(std::isfinite(heading), "heading", heading, "must be finite [rad]");
+  require_number(heading, "heading", "rad");
   require(!T_world_tip.empty(), "T_world_tip", "[]", "must hold at least one pose");
   require(!distances.empty(), "distances", "[]", "must hold at least one distance [m]");
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
@@ -254,7 +256,7 @@ BaseDistance best_base_distance(const CapabilityMap& map, const Poses& T_world_t
   BaseDistance result;
   result.score = -1;
   for (const double distance : distances) {
-    require(std::isfinite(distance), "distances", distance, "must be finite [m]");
+    require_number(distance, "distances", "m");
     const Eigen::Vector3d base(middle[0] - distance * std::cos(heading), middle[1] - distance * std::sin(heading),
                                heading);
     const double score = map.score(T_world_tip, pose_from_planar(base), cone);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/core/parallel.hpp"
 #include "reach/database/reach_data.hpp"
 
@@ -52,8 +53,7 @@ StoredPose::StoredPose(const Pose& T, const CellIndex& cell, double edge) : unus
 
 void ReachOptions::check() const {
   require(samples > 0, "samples", static_cast<double>(samples), "must be positive");
-  require(std::isfinite(position_cell) && position_cell > 0, "position_cell", position_cell,
-          "must be positive and finite [m]");
+  require_positive(position_cell, "position_cell", "m");
   require(rotation_cell > 0.05 && rotation_cell <= 3, "rotation_cell", rotation_cell, "must lie in (0.05, 3] [rad]");
   require(max_per_cell > 0, "max_per_cell", max_per_cell, "must be positive");
   require(min_manipulability >= 0 && min_manipulability < 1, "min_manipulability", min_manipulability,

@@ -81,7 +81,7 @@ void check_checker(const CollisionChecker* checker, const JointGroup& arm) {
 void ReachSolveOptions::check() const {
   require_within(count, 1, 1e6, "count", "configurations");
   require_within(candidates, 1, 1e6, "candidates", "stored configurations");
-  require(distinct >= 0 && std::isfinite(distinct), "distinct", distinct, "must be finite and >= 0 [rad or m]");
+  require_not_negative(distinct, "distinct", "rad or m");
   resolve_threads(threads);  // says what is wrong
   ik.check();
 }

@@ -317,7 +317,7 @@ class PlacementSearch {
 }  // namespace
 
 void BasePlacementOptions::check() const {
-  require(std::isfinite(step) && step > 0, "step", step, "must be positive and finite [m]");
+  require_positive(step, "step", "m");
   require(headings > 0 && headings <= 3600, "headings", headings, "must lie in [1, 3600]");
   require_within(candidates, 1, 1e6, "candidates", "base poses");
   require_within(seeds, 1, 1e6, "seeds", "stored configurations");

@@ -6,6 +6,7 @@
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/detail/stopwatch.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/robot/detail/ik_candidates.hpp"
 #include "mmgrasp/robot/detail/ik_descent.hpp"
 #include "mmgrasp/robot/detail/ik_failure.hpp"
@@ -165,19 +166,17 @@ bool confirm(const JointGroup& group, const Pose& T_world_tip, const Eigen::Vect
 }  // namespace detail
 
 void IkOptions::check() const {
-  const auto positive = [](double value, const std::string& field) {
-    require(std::isfinite(value) && value > 0, "ik." + field, value, "must be positive and finite");
-  };
-  positive(position_tolerance, "position_tolerance");
-  positive(rotation_tolerance, "rotation_tolerance");
-  require(max_iterations > 0, "ik.max_iterations", max_iterations, "must be positive");
-  require(restarts >= 0, "ik.restarts", restarts, "must not be negative");
-  require(time_limit > 0, "ik.time_limit", time_limit, "must be positive");
+  require_positive(position_tolerance, "ik.position_tolerance", "m");
+  require_positive(rotation_tolerance, "ik.rotation_tolerance", "rad");
+  require_positive(max_iterations, "ik.max_iterations", "", detail::kInfinity);
+  require_not_negative(restarts, "ik.restarts", "", detail::kInfinity);
+  require_positive(time_limit, "ik.time_limit", "s", detail::kInfinity);
   for (std::size_t i = 0; i < joint_weights.size(); ++i)
-    positive(joint_weights[i], "joint_weights[" + std::to_string(i) + "]");
+    if (!(joint_weights[i] > 0 && joint_weights[i] <= kLargestLength))
+      require_positive(joint_weights[i], "ik.joint_weights[" + std::to_string(i) + "]");
   for (std::size_t i = 0; i < objectives.size(); ++i)
     if (!objectives[i]) throw InvalidInput("ik.objectives[" + std::to_string(i) + "]: must not be empty");
-  require(objective_iterations >= 0, "ik.objective_iterations", objective_iterations, "must not be negative");
+  require_not_negative(objective_iterations, "ik.objective_iterations", "", detail::kInfinity);
 }
 
 IkResult solve_ik(const JointGroup& group, const Pose& T_world_tip, const Eigen::VectorXd& seed,

@@ -6,6 +6,7 @@
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/robot/detail/ik_closed_form.hpp"
 #include "mmgrasp/robot/detail/manipulability_measure.hpp"
 
@@ -13,7 +14,7 @@ namespace mmgrasp {
 namespace {
 
 void check_weight(double weight) {
-  require(std::isfinite(weight) && weight >= 0, "objective weight", weight, "must be finite and not negative");
+  require_not_negative(weight, "objective weight");
 }
 
 /// (5.10) with its mirror: as printed it has no bound on where it is active and leaves out the lower limit.
@@ -157,7 +158,7 @@ std::shared_ptr<const IkObjective> make_joint_limit_objective(const JointGroup& 
 
 std::shared_ptr<const IkObjective> make_singularity_objective(const JointGroup& group, double threshold,
                                                               double weight) {
-  require(std::isfinite(threshold) && threshold > 0, "threshold", threshold, "must be positive and finite");
+  require_positive(threshold, "threshold");
   check_weight(weight);
   const int arm = group.size() - (group.has_base() ? 3 : 0);
   require(arm >= 6, "joints of the arm", arm, "must be at least 6: with fewer, sqrt(det(J J^T)) is always 0");
@@ -171,9 +172,7 @@ std::shared_ptr<const IkObjective> make_camera_view_objective(const JointGroup& 
   require(camera_link >= 0 && camera_link < links, "camera_link", camera_link,
           "must be the index of a link, below " + std::to_string(links));
   checked_pose(T_link_camera.matrix(), "T_link_camera");
-  for (int i = 0; i < 3; ++i)
-    require(std::isfinite(p_world_point[i]), "p_world_point[" + std::to_string(i) + "]", p_world_point[i],
-            "must be finite");
+  for (int i = 0; i < 3; ++i) require_number(p_world_point[i], "p_world_point[" + std::to_string(i) + "]");
   check_weight(weight);
   return std::make_shared<CameraView>(group, camera_link, T_link_camera, p_world_point, weight);
 }

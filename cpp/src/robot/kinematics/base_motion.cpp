@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -18,18 +19,16 @@ Eigen::Vector3d turned(double angle, const Eigen::Vector3d& v) {
 }
 
 void check_finite(double value, const char* field) {
-  require(std::isfinite(value), field, value, "must be finite");
+  require_number(value, field);
 }
 
 void check_velocity(const Eigen::Vector3d& velocity, const char* field) {
   const char* parts[] = {"[0]", "[1]", "[2]"};
-  for (int i = 0; i < 3; ++i)
-    require(std::isfinite(velocity[i]), std::string(field) + parts[i], velocity[i], "must be finite");
+  for (int i = 0; i < 3; ++i) require_number(velocity[i], std::string(field) + parts[i]);
 }
 
 void check_separation(double wheel_separation) {
-  require(std::isfinite(wheel_separation) && wheel_separation > 0, "wheel_separation", wheel_separation,
-          "must be positive and finite");
+  require_positive(wheel_separation, "wheel_separation");
 }
 
 }  // namespace

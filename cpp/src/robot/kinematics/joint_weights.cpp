@@ -5,6 +5,7 @@
 
 #include "mmgrasp/core/detail/near_name.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
 
@@ -26,9 +27,7 @@ Eigen::VectorXd JointWeights::of(const JointGroup& group) const {
   if (weights.size() == 0) return {};
   require(weights.size() == group.size(), "joint_weights: number of them", weights.size(),
           "must be " + std::to_string(group.size()) + ", one per joint of group '" + group.name() + "'");
-  for (Eigen::Index i = 0; i < weights.size(); ++i)
-    require(std::isfinite(weights[i]) && weights[i] > 0, "joint_weights of '" + names[i] + "'", weights[i],
-            "must be finite and > 0");
+  for (Eigen::Index i = 0; i < weights.size(); ++i) require_positive(weights[i], "joint_weights of '" + names[i] + "'");
   return (weights.array() == 1).all() ? Eigen::VectorXd() : weights;
 }
 

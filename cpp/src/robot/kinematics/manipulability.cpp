@@ -5,6 +5,7 @@
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/robot/detail/joint_group_data.hpp"
 #include "mmgrasp/robot/detail/manipulability_measure.hpp"
 
@@ -32,7 +33,7 @@ SmallVector unit(const Eigen::VectorXd& direction) {
   require(direction.size() == 3 || direction.size() == 6, "direction length", static_cast<double>(direction.size()),
           "must be 3 (translation) or 6 (twist)");
   for (Eigen::Index i = 0; i < direction.size(); ++i)
-    require(std::isfinite(direction[i]), "direction[" + std::to_string(i) + "]", direction[i], "must be finite");
+    require_number(direction[i], "direction[" + std::to_string(i) + "]");
   const double length = direction.stableNorm();
   require(length > 0, "direction length", length, "must not be zero: the tool has to go somewhere");
   return direction / length;

@@ -6,6 +6,7 @@
 
 #include "mmgrasp/core/detail/near_name.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -56,7 +57,7 @@ Eigen::VectorXd named_configuration(const JointGroup& group, const std::map<std:
       throw InvalidInput("joint \"" + name + "\": is none of group \"" + group.name() + "\"" +
                          detail::near_miss(name, names));
     }
-    require(std::isfinite(value), "joint \"" + name + "\"", value, "must be finite [rad or m]");
+    require_number(value, "joint \"" + name + "\"", "rad or m");
     q[column - names.begin()] = value;
   }
   return q;

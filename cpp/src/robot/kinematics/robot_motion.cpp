@@ -6,6 +6,7 @@
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/robot/base_motion.hpp"
 
 namespace mmgrasp {
@@ -32,7 +33,7 @@ void require_joined(const V& end, const V& begin, const std::string& what) {
 }  // namespace
 
 void RobotMotion::wait(double duration) {
-  require(duration >= 0 && std::isfinite(duration), "duration", duration, "must be at least 0 and finite");
+  require_not_negative(duration, "duration");
   if (times.empty()) throw InvalidInput("wait: the motion has no points");
   const double speed = std::max(velocities.back().size() ? velocities.back().cwiseAbs().maxCoeff() : 0.0,
                                 base_twists.back().cwiseAbs().maxCoeff());

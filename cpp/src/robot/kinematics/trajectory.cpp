@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -33,7 +34,7 @@ double JointPath::length() const {
 
 Eigen::VectorXd JointTrajectory::at(double time) const {
   if (times.empty()) throw InvalidInput("trajectory times = []: must hold at least one sample");
-  require(std::isfinite(time), "time", time, "must be finite [s]");
+  require_number(time, "time", "s");
   if (time <= times.front()) return positions.front();
   if (time >= times.back()) return positions.back();
   const auto upper = std::upper_bound(times.begin(), times.end(), time);

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
 
@@ -26,8 +27,7 @@ BaseKind base_kind_from_string(const std::string& name) {
 
 void BaseLimits::check() const {
   const auto positive = [](double value, const char* field) {
-    require(std::isfinite(value) && value > 0, std::string("base_limits.") + field, value,
-            "must be positive and finite");
+    require_positive(value, std::string("base_limits.") + field);
   };
   positive(linear_velocity, "linear_velocity");
   positive(angular_velocity, "angular_velocity");

@@ -6,6 +6,7 @@
 #include "mmgrasp/core/detail/utf8.hpp"
 #include "mmgrasp/core/detail/xml_document.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/geometry/shape.hpp"
 #include "mmgrasp/geometry/simplify_mesh.hpp"
 #include "robot/model/mesh_locator.hpp"
@@ -114,8 +115,7 @@ void warn_of_odd_sizes(detail::RobotParts& parts) {
 Robot load_robot(const std::string& urdf, const std::string& urdf_origin, const std::string& srdf,
                  const std::string& srdf_origin, const RobotOptions& options) {
   options.base_limits.check();
-  require(std::isfinite(options.mesh_tolerance) && options.mesh_tolerance >= 0, "mesh_tolerance",
-          options.mesh_tolerance, "must be >= 0 and finite");
+  require_not_negative(options.mesh_tolerance, "mesh_tolerance");
   detail::RobotParts parts = detail::read_urdf(urdf, urdf_origin);
   parts.base = options.base;
   parts.base_limits = options.base_limits;

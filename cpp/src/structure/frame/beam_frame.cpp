@@ -4,6 +4,7 @@
 #include <string>
 
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "structure/frame/beam_element.hpp"
 #include "structure/node_pieces.hpp"
 
@@ -60,9 +61,7 @@ void check_members(const BeamFrame& frame) {
 
 void BeamFrame::check() const {
   require(!members.empty(), "members", "[]", "a frame has at least one member");
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    if (!nodes[i].allFinite()) require(false, entry("nodes", i), "not finite", "must be three finite numbers [m]");
-  }
+  for (std::size_t i = 0; i < nodes.size(); ++i) require_numbers(nodes[i], entry("nodes", i), "m");
   check_members(*this);
   std::vector<std::array<int, 2>> ends;
   for (const BeamMember& member : members) ends.push_back(member.nodes);
@@ -71,10 +70,9 @@ void BeamFrame::check() const {
     const NodeLoad& load = loads[i];
     require(load.node >= 0 && load.node < static_cast<int>(nodes.size()), entry("loads", i) + ".node", load.node,
             "must be one of the " + std::to_string(nodes.size()) + " nodes, from 0");
-    require(std::isfinite(load.mass) && load.mass >= 0, entry("loads", i) + ".mass", load.mass,
-            "must be zero or positive [kg]");
-    require(load.force.allFinite() && load.moment.allFinite(), entry("loads", i), "not finite",
-            "force [N] and moment [N m] must be finite");
+    require_not_negative(load.mass, entry("loads", i) + ".mass", "kg", kLargestNumber);
+    require_numbers(load.force, entry("loads", i) + ".force", "N", kLargestNumber);
+    require_numbers(load.moment, entry("loads", i) + ".moment", "N m", kLargestNumber);
   }
 }
 

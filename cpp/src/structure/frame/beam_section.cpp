@@ -6,25 +6,17 @@
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
-namespace {
 
 using detail::kPi;
 
-void require_positive(double value, const char* field, const char* unit) {
-  if (std::isfinite(value) && value > 0) return;
-  require(false, field, value, std::string("must be positive [") + unit + "]");
-}
-
-}  // namespace
-
 void BeamMaterial::check() const {
-  require(std::isfinite(density) && density >= 0, "density", density, "must be zero or positive [kg/m3]");
-  require_positive(youngs_modulus, "youngs_modulus", "Pa");
-  require_positive(shear_modulus, "shear_modulus", "Pa");
-  require(std::isfinite(stress_limit) && stress_limit >= 0, "stress_limit", stress_limit,
-          "must be positive [Pa], or zero for none");
+  require_not_negative(density, "density", "kg/m3");
+  require_positive(youngs_modulus, "youngs_modulus", "Pa", kLargestNumber);
+  require_positive(shear_modulus, "shear_modulus", "Pa", kLargestNumber);
+  require_not_negative(stress_limit, "stress_limit", "Pa", kLargestNumber);
 }
 
 BeamMaterial copper() {
@@ -36,18 +28,16 @@ void BeamSection::check() const {
   require_positive(iy, "iy", "m4");
   require_positive(iz, "iz", "m4");
   require_positive(torsion, "torsion", "m4");
-  const auto extent = [](double value, const char* field) {
-    require(std::isfinite(value) && value >= 0, field, value, "must be positive, or zero where it is not known");
-  };
-  extent(y_extent, "y_extent");
-  extent(z_extent, "z_extent");
-  extent(torsion_modulus, "torsion_modulus");
+  require_not_negative(y_extent, "y_extent", "m");  // zero where it is not known
+  require_not_negative(z_extent, "z_extent", "m");
+  require_not_negative(torsion_modulus, "torsion_modulus", "m3");
 }
 
 BeamSection round_section(double outer_diameter, double inner_diameter) {
-  require_positive(outer_diameter, "outer_diameter", "m");
-  require(std::isfinite(inner_diameter) && inner_diameter >= 0 && inner_diameter < outer_diameter, "inner_diameter",
-          inner_diameter, "must be zero or positive and less than outer_diameter = " + std::to_string(outer_diameter));
+  require_length(outer_diameter, "outer_diameter");
+  require_number(inner_diameter, "inner_diameter", "m");
+  require(inner_diameter >= 0 && inner_diameter < outer_diameter, "inner_diameter", inner_diameter,
+          "must be zero or positive and less than outer_diameter = " + std::to_string(outer_diameter));
   const double outer = outer_diameter * outer_diameter, inner = inner_diameter * inner_diameter;
   BeamSection section;
   section.area = kPi / 4 * (outer - inner);
@@ -60,10 +50,11 @@ BeamSection round_section(double outer_diameter, double inner_diameter) {
 }
 
 BeamSection rectangular_section(double y_length, double z_length, double wall) {
-  require_positive(y_length, "y_length", "m");
-  require_positive(z_length, "z_length", "m");
+  require_length(y_length, "y_length");
+  require_length(z_length, "z_length");
   const double shorter = std::min(y_length, z_length), longer = std::max(y_length, z_length);
-  require(std::isfinite(wall) && wall >= 0 && 2 * wall < shorter, "wall", wall,
+  require_number(wall, "wall", "m");
+  require(wall >= 0 && 2 * wall < shorter, "wall", wall,
           "must be zero for a bar, or positive and less than half of the shorter side of " + std::to_string(shorter));
   const double y_hole = wall > 0 ? y_length - 2 * wall : 0, z_hole = wall > 0 ? z_length - 2 * wall : 0;
   BeamSection section;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "structure/frame/beam_element.hpp"
 #include "structure/frame/beam_solve.hpp"
 #include "structure/frame/load_balance.hpp"
@@ -22,7 +23,7 @@ using Eigen::Vector3d;
 constexpr int kLoads = 4;  // gravity of 1 m/s2 along x, y, z, and what is fixed in the object's frame
 /// Factors of the four loads under a gravity.
 Eigen::Vector4d factors(const Vector3d& gravity) {
-  require(gravity.allFinite(), "gravity", "not finite", "must be three finite numbers [m/s2]");
+  require_numbers(gravity, "gravity", "m/s2");
   return {gravity.x(), gravity.y(), gravity.z(), 1};
 }
 
@@ -65,7 +66,7 @@ BeamSupport beam_support(const Grasp& grasp) {
 }
 
 Vector3d gravity_in_object(const Pose& T_world_object, double gravity) {
-  require(std::isfinite(gravity) && gravity >= 0, "gravity", gravity, "must be zero or positive [m/s2]");
+  require_not_negative(gravity, "gravity", "m/s2");
   return -gravity * T_world_object.linear().row(2).transpose();
 }
 

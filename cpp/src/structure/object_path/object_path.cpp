@@ -7,6 +7,7 @@
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "structure/object_path/attached_object.hpp"
 #include "structure/object_path/configuration_graph.hpp"
 #include "structure/object_path/path_configurations.hpp"
@@ -67,12 +68,8 @@ void ObjectPathProblem::check() const {
 }
 
 void ObjectPathOptions::check() const {
-  const auto weight = [](double value, const char* field) {
-    require(std::isfinite(value) && value >= 0, field, value, "must be zero or positive");
-  };
-  const auto positive = [](double value, const char* field) {
-    require(std::isfinite(value) && value > 0, field, value, "must be positive");
-  };
+  const auto weight = [](double value, const char* field) { require_not_negative(value, field); };
+  const auto positive = [](double value, const char* field) { require_positive(value, field); };
   weight(motion_weight, "motion_weight");
   weight(deflection_weight, "deflection_weight");
   weight(manipulability_weight, "manipulability_weight");

@@ -6,6 +6,7 @@
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/detail/stopwatch.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "task/base_placement/platform_draws.hpp"
 
 namespace mmgrasp {
@@ -155,9 +156,7 @@ class Search {
 };
 
 void check_point(const Eigen::Vector3d& point, const std::string& field) {
-  for (int i = 0; i < 3; ++i)
-    require(std::isfinite(point[i]), "platform_locations." + field + "[" + std::to_string(i) + "]", point[i],
-            "must be finite");
+  for (int i = 0; i < 3; ++i) require_number(point[i], "platform_locations." + field + "[" + std::to_string(i) + "]");
 }
 
 }  // namespace
@@ -165,10 +164,8 @@ void check_point(const Eigen::Vector3d& point, const std::string& field) {
 void PlatformLocationsOptions::check() const {
   require(samples > 0, "platform_locations.samples", samples, "must be positive");
   require(max_draws > 0, "platform_locations.max_draws", max_draws, "must be positive");
-  require(std::isfinite(least_manipulability) && least_manipulability >= 0, "platform_locations.least_manipulability",
-          least_manipulability, "must be finite and not negative");
-  require(std::isfinite(turn_weight) && turn_weight >= 0, "platform_locations.turn_weight", turn_weight,
-          "must be finite and not negative");
+  require_not_negative(least_manipulability, "platform_locations.least_manipulability");
+  require_not_negative(turn_weight, "platform_locations.turn_weight");
   require(time_limit > 0, "platform_locations.time_limit", time_limit, "must be positive");
 }
 

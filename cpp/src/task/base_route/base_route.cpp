@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/core/pose.hpp"
 #include "mmgrasp/robot/base_motion.hpp"
 #include "task/base_route/base_search.hpp"
@@ -99,16 +100,16 @@ Eigen::AlignedBox2d around(const Eigen::AlignedBox2d& floor, const Eigen::Vector
 }  // namespace
 
 void BaseRouteOptions::check() const {
-  require(std::isfinite(resolution) && resolution > 0, "route.resolution", resolution, "must be positive and finite");
-  require(std::isfinite(check_step) && check_step > 0, "route.check_step", check_step, "must be positive and finite");
+  require_length(resolution, "route.resolution");
+  require_length(check_step, "route.check_step");
 }
 
 BasePath plan_base_route(CollisionChecker& checker, const Eigen::VectorXd& home, const Eigen::Vector3d& from,
                          const Eigen::Vector3d& to, const BaseRouteOptions& options, const Monitor& monitor) {
   options.check();
   checker.group().check_configuration(home, "home");
-  require(from.allFinite(), "from", from.sum(), "must be finite");
-  require(to.allFinite(), "to", to.sum(), "must be finite");
+  require_numbers(from, "from", "m, rad");
+  require_numbers(to, "to", "m, rad");
   BasePath path;
   BaseClearance clearance(checker, home, options.check_step);
   if (!clearance.free(from) || !clearance.free(to)) {
@@ -161,7 +162,7 @@ Eigen::MatrixXd route_lengths(const CollisionChecker& checker, const Eigen::Vect
   options.check();
   checker.group().check_configuration(home, "home");
   for (std::size_t i = 0; i < poses.size(); ++i)
-    require(poses[i].allFinite(), "poses[" + std::to_string(i) + "]", poses[i].sum(), "must be finite");
+    require_numbers(poses[i], "poses[" + std::to_string(i) + "]", "m, rad");
   if (poses.empty()) return Eigen::MatrixXd(0, 0);
   const detail::FloorField field(checker, home, options.base, poses, options.resolution, threads, monitor);
   return field.complete() ? field.lengths() : Eigen::MatrixXd();

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/task/base_sequence.hpp"
 #include "task/base_sequence/inscribed_circle.hpp"
 #include "task/base_sequence/region_patches.hpp"
@@ -306,7 +307,7 @@ Intersections maximal_intersections(const RegionPatches& patches, double min_rad
 
 Intersections maximal_intersections(const BaseGrid& grid, const std::vector<BaseRegion>& regions, double min_radius,
                                     std::size_t max_boxes, const Monitor& monitor) {
-  require(std::isfinite(min_radius) && min_radius >= 0, "min_radius", min_radius, "must be finite and not negative");
+  require_not_negative(min_radius, "min_radius");
   return detail::maximal_intersections(detail::RegionPatches(grid, regions), min_radius, max_boxes, monitor);
 }
 

@@ -7,6 +7,7 @@
 
 #include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/core/random.hpp"
 #include "mmgrasp/optim/assignment.hpp"
 #include "mmgrasp/task/policies.hpp"
@@ -231,8 +232,7 @@ void OrderOptions::check() const {
 PickingOrder paired_order(const std::vector<std::vector<Eigen::Vector2d>>& places) {
   PickingOrder order;
   for (std::size_t tray = 0; tray < places.size(); ++tray) {
-    for (const Eigen::Vector2d& p : places[tray])
-      require(p.allFinite(), "places[" + std::to_string(tray) + "]", p.sum(), "must be finite");
+    for (const Eigen::Vector2d& p : places[tray]) require_numbers(p, "places[" + std::to_string(tray) + "]", "m");
     std::vector<int> own(places[tray].size());
     std::iota(own.begin(), own.end(), 0);
     if (tray == 0 || own.empty() || order.back().empty()) {

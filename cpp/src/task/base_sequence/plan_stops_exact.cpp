@@ -5,6 +5,7 @@
 
 #include "mmgrasp/core/detail/stopwatch.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/optim/set_cover.hpp"
 #include "mmgrasp/task/base_sequence.hpp"
 #include "task/base_sequence/equal_covers.hpp"
@@ -223,7 +224,7 @@ class LeastStops {
 }  // namespace
 
 void StopOptions::check() const {
-  require(std::isfinite(min_radius) && min_radius >= 0, "min_radius", min_radius, "must be finite and not negative");
+  require_not_negative(min_radius, "min_radius");
   require(time_limit > 0, "time_limit", time_limit, "must be > 0");
   require(tie_time_limit >= 0, "tie_time_limit", tie_time_limit, "must be 0 or more");
 }

@@ -6,6 +6,7 @@
 
 #include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/task/base_sequence.hpp"
 #include "task/base_sequence/inscribed_circle.hpp"
 
@@ -132,7 +133,7 @@ class LayerGrowth {
 
 Intersections robust_intersections(const BaseGrid& grid, const std::vector<BaseRegion>& regions, double min_radius,
                                    std::size_t max_sets) {
-  require(std::isfinite(min_radius) && min_radius >= 0, "min_radius", min_radius, "must be finite and not negative");
+  require_not_negative(min_radius, "min_radius");
   require(max_sets >= 1 && max_sets <= kMostSets, "max_sets", static_cast<double>(max_sets),
           "must be in [1, 10000000]");
   for (const BaseRegion& region : regions) {

@@ -213,7 +213,7 @@ void DriveByOptions::check() const {
   require_within(goal_configurations, 1, 1e4, "goal_configurations", "");
   require(iterations > 0, "iterations", iterations, "must be positive");
   require(time_limit > 0, "time_limit", time_limit, "must be positive");
-  require(jerk_time >= 0 && std::isfinite(jerk_time), "jerk_time", jerk_time, "must be at least 0");
+  require_not_negative(jerk_time, "jerk_time");
   resolve_threads(threads);  // says what is wrong
   trajectory.check();
 }

@@ -7,6 +7,7 @@
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp::detail {
 namespace {
@@ -37,8 +38,7 @@ void check_push(const DriveByTask& task, const std::string& field) {
   push.closing.check();
   require(axis_of(push.approach) >= 0, field + ".approach", push.approach.norm(),
           "must be an axis of the tip's frame, of either sign");
-  require(push.free_length > 0 && std::isfinite(push.free_length), field + ".free_length", push.free_length,
-          "must be positive");
+  require_positive(push.free_length, field + ".free_length");
   require(std::abs(push.closing_direction.norm() - 1) < 1e-9, field + ".closing_direction",
           push.closing_direction.norm(), "must have length 1");
   require(std::abs(push.closing_direction.dot(push.approach)) < 1e-6, field + ".closing_direction along the approach",
@@ -113,15 +113,14 @@ void check_tasks(const std::vector<DriveByTask>& tasks, const World& world) {
     for (std::size_t c = 0; c < task.candidates.size(); ++c)
       checked_pose(task.candidates[c].matrix(), field + ".candidates[" + std::to_string(c) + "]");
     for (int k = 0; k < 6; ++k) {
-      require(task.tolerance[k] >= 0 && std::isfinite(task.tolerance[k]),
-              field + ".tolerance[" + std::to_string(k) + "]", task.tolerance[k], "must be at least 0 and finite");
+      require_not_negative(task.tolerance[k], field + ".tolerance[" + std::to_string(k) + "]");
     }
     require(task.free_axes.size() == 6, field + ".free_axes", static_cast<double>(task.free_axes.size()),
             "must have 6 entries");
     require(task.max_tool_speed > 0, field + ".max_tool_speed", task.max_tool_speed, "must be positive");
     require(task.object.empty() || world.objects().count(task.object) > 0, field + ".object", "'" + task.object + "'",
             "must be an object of the world");
-    require(task.dwell >= 0 && std::isfinite(task.dwell), field + ".dwell", task.dwell, "must be at least 0");
+    require_not_negative(task.dwell, field + ".dwell");
     if (task.push) check_push(task, field + ".push");
   }
 }

@@ -5,6 +5,7 @@
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/detail/stopwatch.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/task/drive_by.hpp"
 #include "task/drive_by/drive_by_events.hpp"
 #include "task/drive_by/drive_by_seed.hpp"
@@ -30,12 +31,12 @@ void check_known(const JointGroup& group, const std::vector<DriveByTask>& tasks,
   for (const VectorXd& q : known.positions) {
     require(q.size() == group.size(), "positions", static_cast<double>(q.size()),
             "must hold " + std::to_string(group.size()) + " values each");
-    require(q.allFinite(), "positions", q.sum(), "must be finite");
+    require_numbers(q, "positions", "rad or m");
   }
   for (std::size_t i = 0; i < known.times.size(); ++i) {
     const double before = i == 0 ? -detail::kInfinity : known.times[i - 1];
-    require(std::isfinite(known.times[i]) && known.times[i] > before, "times", known.times[i],
-            "must be finite and increase");
+    require_number(known.times[i], "times");
+    require(known.times[i] > before, "times", known.times[i], "must be finite and increase");
   }
   require(known.task_times.size() == tasks.size(), "task_times", static_cast<double>(known.task_times.size()),
           "must be as many as tasks");

@@ -3,16 +3,10 @@
 #include <cmath>
 
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "task/pick/search_pick.hpp"
 
 namespace mmgrasp {
-namespace {
-
-void require_positive(double value, const char* field) {
-  require(std::isfinite(value) && value > 0, field, value, "must be positive and finite");
-}
-
-}  // namespace
 
 const char* to_string(MotionKind kind) {
   switch (kind) {

@@ -12,14 +12,6 @@ namespace {
 
 constexpr std::size_t kMostHeadings = 360;  // of a tray
 
-void require_positive(double value, const std::string& field) {
-  require(std::isfinite(value) && value > 0, field, value, "must be positive and finite");
-}
-
-void require_not_negative(double value, const std::string& field) {
-  require(std::isfinite(value) && value >= 0, field, value, "must be finite and not negative");
-}
-
 void check_part(const Part& part, const std::string& tray) {
   const std::string field = "part '" + part.name + "' in tray '" + tray + "'";
   require(!part.shapes.empty(), field + " shapes", "0", "must hold at least one");
@@ -43,12 +35,10 @@ void check_trays(const PartSupplyProblem& problem) {
             "must not be empty or used twice");
     const std::string field = "tray '" + tray.name + "'";
     checked_pose(tray.T_world_tray.matrix(), field + " pose");
-    require(tray.size.allFinite() && tray.size.minCoeff() > 0, field + " size", tray.size.minCoeff(),
-            "must be positive");
+    for (double length : tray.size) require_length(length, field + " size");
     require(tray.headings.size() <= kMostHeadings, field + " headings", static_cast<double>(tray.headings.size()),
             "must be at most 360: each is a layer of the base grid");
-    for (double heading : tray.headings)
-      require(std::isfinite(heading), field + " headings", heading, "must be finite");
+    for (double heading : tray.headings) require_number(heading, field + " headings");
     for (const Part& part : tray.parts) {
       require(!part.name.empty() && part_names.insert(part.name).second, "part name", "'" + part.name + "'",
               "must not be empty or used twice");
@@ -68,7 +58,7 @@ void check_trays(const PartSupplyProblem& problem) {
 
 void check_arrival_covariance(const Eigen::Matrix3d& covariance) {
   const char* field = "arrival_covariance";
-  require(covariance.allFinite(), field, covariance.sum(), "must be finite");
+  require(covariance.allFinite(), field, "not finite", "must be finite");
   const double size = covariance.cwiseAbs().maxCoeff();
   const double skew = (covariance - covariance.transpose()).cwiseAbs().maxCoeff();
   require(skew <= 1e-9 * size, field, skew, "must be symmetric; by so much do two entries differ");
@@ -105,11 +95,10 @@ void PartSupplyProblem::check() const {
           "must be the arm's tip");
   for (const HandJoint& joint : gripper.joints) robot.joint_index(joint.name);
   for (const std::string& link : gripper.finger_links) robot.link_index(link);
-  require(start.allFinite(), "start", start.sum(), "must be finite");
-  require(goal.allFinite(), "goal", goal.sum(), "must be finite");
+  require_numbers(start, "start", "m, rad");
+  require_numbers(goal, "goal", "m, rad");
   checked_pose(place_region.T_base_bin.matrix(), "place_region.pose");
-  require(place_region.size.allFinite() && place_region.size.minCoeff() > 0, "place_region.size",
-          place_region.size.minCoeff(), "must be positive");
+  for (double length : place_region.size) require_length(length, "place_region.size");
   require_not_negative(place_region.drop_height, "place_region.drop_height");
   require(world.attached().empty(), "world", "an attached object", "must hold nothing attached at the start");
   check_arrival_covariance(arrival_covariance);

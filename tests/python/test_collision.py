@@ -130,7 +130,7 @@ def test_edges_say_what_refuses_them(
     assert bounds.shape == (len(arm.names),) and (bounds > 0).all()
     with pytest.raises(mg.InvalidInput, match="did you mean"):
         checker.check_edge(draws[0], draws[1], joint_stepp=0.1)  # type: ignore[call-arg]
-    with pytest.raises(mg.InvalidInput, match=r"tolerance = 0.*must be finite and > 0"):
+    with pytest.raises(mg.InvalidInput, match=r"tolerance = 0.*must be positive and finite"):
         checker.check_edge(draws[0], draws[1], tolerance=0.0)
 
 

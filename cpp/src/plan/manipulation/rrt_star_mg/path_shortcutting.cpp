@@ -71,9 +71,7 @@ int PathShortcutting::improve_randomly(Rng& rng, int grasps) {
 
 bool PathShortcutting::shortcut_corner(Rng& rng, int grasp) {
   const std::size_t corner = 1 + rng.index(vertices_.size() - 2);
-  // Between two steps of its check an edge may cut a corner of an obstacle, and no part of it passes the check again.
-  // Points beside it on the side away from the obstacle do, and cost next to nothing.
-  const double lift = rng.uniform() < kLiftProbability ? std::pow(kLeastShare, rng.uniform()) : 0;
+  const double lift = draw_lift(rng);
   made_.clear();
   for (const std::size_t neighbour : {corner - 1, corner + 1}) {
     const double share = draw_share(rng);
@@ -87,7 +85,7 @@ bool PathShortcutting::shortcut_corner(Rng& rng, int grasp) {
 bool PathShortcutting::shortcut_some_joints(Rng& rng, int grasp) {
   const std::size_t first = rng.index(vertices_.size() - 2);
   const std::size_t last = first + 2 + rng.index(vertices_.size() - first - 2);
-  const double share = draw_share(rng);
+  const double share = draw_share(rng), lift = draw_lift(rng);
   const int d = trees_.ends().dimension();
   for (int k = 0; k < d; ++k) moves_[k] = rng.uniform() < 0.5 ? share : 0;
   const JointMetric& metric = trees_.ends().metric();
@@ -102,6 +100,7 @@ bool PathShortcutting::shortcut_some_joints(Rng& rng, int grasp) {
     passed += trees_.vertex_distance(vertices_[i - 1], vertices_[i]);
     const Eigen::VectorXd &from = way.front(), &to = way.back(), &own = way[i - first];
     for (int k = 0; k < d; ++k) q_[k] = own[k] + moves_[k] * (from[k] + passed / whole * (to[k] - from[k]) - own[k]);
+    lift_out(i, lift * whole);
     metric.wrap(q_.data());
     made_.push_back(trees_.add_configuration(q_.data()));
   }
@@ -149,19 +148,30 @@ double PathShortcutting::draw_share(Rng& rng) {
   return kind < 2 ? rng.uniform() : std::pow(kLeastShare, rng.uniform());
 }
 
+// Between two steps of its check an edge may cut a corner of an obstacle, and nothing near it passes the check again:
+// no part of it, and no edge with the same ends in some joints. Points on the side away from the obstacle do, and cost
+// next to nothing.
+double PathShortcutting::draw_lift(Rng& rng) {
+  return rng.uniform() < kLiftProbability ? std::pow(kLeastShare, rng.uniform()) : 0;
+}
+
+void PathShortcutting::lift_out(std::size_t corner, double length) {
+  if (length == 0) return;
+  const JointMetric& metric = trees_.ends().metric();
+  const double* at = trees_.at(vertices_[corner]);
+  for (const std::size_t neighbour : {corner - 1, corner + 1}) {
+    const double* other = trees_.at(vertices_[neighbour]);
+    const double apart = std::max(trees_.vertex_distance(vertices_[corner], vertices_[neighbour]), kSameConfiguration);
+    for (int k = 0; k < trees_.ends().dimension(); ++k)
+      q_[k] -= length / apart * (metric.nearest(k, at[k], other[k]) - at[k]);
+  }
+}
+
 int PathShortcutting::point_beside_edge(std::size_t corner, std::size_t neighbour, double share, double lift) {
   const JointMetric& metric = trees_.ends().metric();
   const double *at = trees_.at(vertices_[corner]), *to = trees_.at(vertices_[neighbour]);
-  const double *before = trees_.at(vertices_[corner - 1]), *after = trees_.at(vertices_[corner + 1]);
-  const auto length_to = [&](std::size_t i) {
-    return std::max(trees_.vertex_distance(vertices_[corner], vertices_[i]), kSameConfiguration);
-  };
-  const double scale = lift * length_to(neighbour);
-  const double by_before = scale / length_to(corner - 1), by_after = scale / length_to(corner + 1);
-  for (int k = 0; k < trees_.ends().dimension(); ++k) {
-    const auto off = [&](const double* q) { return metric.nearest(k, at[k], q[k]) - at[k]; };
-    q_[k] = at[k] + share * off(to) - by_before * off(before) - by_after * off(after);
-  }
+  for (int k = 0; k < trees_.ends().dimension(); ++k) q_[k] = at[k] + share * (metric.nearest(k, at[k], to[k]) - at[k]);
+  lift_out(corner, lift * trees_.vertex_distance(vertices_[corner], vertices_[neighbour]));
   metric.wrap(q_.data());
   return trees_.add_configuration(q_.data());
 }

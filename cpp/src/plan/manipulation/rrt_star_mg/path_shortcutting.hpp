@@ -43,6 +43,10 @@ class MMGRASP_EXPORT PathShortcutting {
   bool replace(int grasp, std::size_t first, std::size_t last);
   /// How far a shortcut goes, in (0, 1].
   static double draw_share(Rng& rng);
+  /// How far what a shortcut makes is lifted out of the corners, as a share of the path it replaces; often 0.
+  static double draw_lift(Rng& rng);
+  /// Moves q_, which was made of a corner, out of it by `length` along its bisector.
+  void lift_out(std::size_t corner, double length);
   /// A new configuration on the edge from a corner to a neighbour, `share` of its length away from the corner, moved
   /// out of the corner along its bisector by about `lift` of that length.
   int point_beside_edge(std::size_t corner, std::size_t neighbour, double share, double lift);

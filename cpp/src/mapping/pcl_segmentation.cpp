@@ -14,6 +14,7 @@
 
 #include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/geometry/detail/quiet_pcl.hpp"
 
 namespace mmgrasp::detail {
 namespace {
@@ -91,6 +92,7 @@ FoundPlane dominant_plane(const std::vector<Eigen::Vector3d>& points, double tol
                           const Eigen::Vector3d& axis, double angle) {
   FoundPlane out;
   if (points.size() < 3) return out;
+  const QuietPcl quiet;
   PlaneSearch search;
   search.setMethodType(pcl::SAC_RANSAC);
   search.setModelType(axis.isZero() ? pcl::SACMODEL_PLANE : pcl::SACMODEL_PERPENDICULAR_PLANE);
@@ -120,6 +122,7 @@ std::vector<std::vector<int>> euclidean_clusters(const std::vector<Eigen::Vector
   std::vector<std::vector<int>> groups;
   if (points.empty()) return groups;
   check_lattice(points, leaf);
+  const QuietPcl quiet;
   const Cloud::Ptr cloud = to_pcl(points);
   Cloud::Ptr thinned(new Cloud);
   pcl::VoxelGrid<pcl::PointXYZ> grid;

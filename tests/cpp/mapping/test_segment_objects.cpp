@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <set>
+#include <thread>
 #include <tuple>
 #include <variant>
 
@@ -355,4 +356,21 @@ TEST(SegmentObjects, MisuseIsRefused) {
   EXPECT_THROW(segment_objects(points, kNoNormals, {}, SupportingPlane{Vector3d::UnitZ(), NAN}), InvalidInput);
   EXPECT_THROW(segment_objects(points, kNoNormals, {}, std::nullopt, Vector3d::Constant(NAN)), InvalidInput);
   EXPECT_THROW(segment_depth_image(DepthImage{}), InvalidInput);
+}
+
+/// PCL writes hundreds of lines when no three points span a plane; here that is an answer. From several threads at once, too,
+/// since PCL has one level for all of them.
+TEST(SegmentObjects, PointsOnALineWriteNothing) {
+  std::vector<Vector3d> line;
+  for (int k = 0; k < 60; ++k) line.emplace_back(0.005 * k, 0, 0);
+  const Matrix3Xd points = columns(line);
+  testing::internal::CaptureStderr();
+  std::vector<std::thread> threads;
+  for (int k = 0; k < 4; ++k) {
+    threads.emplace_back([&] {
+      for (int again = 0; again < 5; ++again) EXPECT_FALSE(segment_objects(points).plane.has_value());
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }

@@ -1,8 +1,9 @@
 #include "geometry/segmentation/ransac_models.hpp"
 
-#include <pcl/console/print.h>
 #include <pcl/point_types.h>
 #include <pcl/segmentation/sac_segmentation.h>
+
+#include "mmgrasp/geometry/detail/quiet_pcl.hpp"
 
 namespace mmgrasp::detail {
 namespace {
@@ -36,12 +37,10 @@ std::vector<int> points_on_model(const std::vector<Eigen::Vector3d>& points,
   search.setOptimizeCoefficients(false);
   search.setInputCloud(cloud);
   search.setInputNormals(directions);
-  const auto level = pcl::console::getVerbosityLevel();  // a model that is not there is no error here
-  pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
+  const QuietPcl quiet;
   pcl::PointIndices inliers;
   pcl::ModelCoefficients coefficients;
   search.segment(inliers, coefficients);
-  pcl::console::setVerbosityLevel(level);
   return {inliers.indices.begin(), inliers.indices.end()};
 }
 

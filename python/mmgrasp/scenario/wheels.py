@@ -53,8 +53,9 @@ def read_wheels(node: Node, base: str) -> Wheels:
         node.fail("an omnidirectional base has four Mecanum wheels: wheelbase is missing")
     if base == "diff_drive" and "wheelbase" in node:
         node["wheelbase"].fail("a diff-drive base has its two driven wheels on one axle: leave it out")
-    optional = {key: node[key].number(above=0) if key in node else None for key in MORE_WHEEL_KEYS.split()}
-    return Wheels(*(node[key].number(above=0) for key in WHEEL_KEYS.split()), **optional)
+    wheelbase, acceleration = (node[key].number(above=0) if key in node else None for key in MORE_WHEEL_KEYS.split())
+    radius, speed, track = (node[key].number(above=0) for key in WHEEL_KEYS.split())
+    return Wheels(radius, speed, track, wheelbase, acceleration)
 
 
 def limits_of_wheels(node: Node, base: str, stated: dict[str, float]) -> dict[str, float]:

@@ -25,9 +25,10 @@ from .._progress import Progress
 from ..documents.reading import RENAMED, Node, near_miss, read_yaml
 from .closed_fingers import fingers_may_meet
 from .shapes import read_shapes
+from .wheels import limits_of_wheels
 
 BASE_LIMITS = "linear_velocity angular_velocity linear_acceleration angular_acceleration workspace wheel_velocity wheel_separation"
-ROBOT_KEYS = "urdf srdf packages xacro_args mesh_tolerance base base_limits mount frames group tool_link joints home"
+ROBOT_KEYS = "urdf srdf packages xacro_args mesh_tolerance base base_limits wheels mount frames group tool_link joints home"
 BIN_LINK = "place_bin"
 LONGEST_CROSSING = 600.0  # from end to end of a joint's range [s]
 SLOWEST = 1e-3  # of a base [m/s, rad/s and their rates]: a round that takes days has more samples than memory
@@ -206,6 +207,8 @@ def compose(node: Node) -> Robot:
             key: value.number(least=SLOWEST) if key in slow else value.number(above=0) for key, value in section.items()
         }
     base = node["base"].choice("fixed", "diff_drive", "omni") if "base" in node else "fixed"
+    if "wheels" in node:
+        limits = limits_of_wheels(node["wheels"], base, limits)
     with (node["base_limits"] if "base_limits" in node else node).blamed():
         robot = _load(node, base, limits)
     for mount in node["mount"].elements() if "mount" in node else []:

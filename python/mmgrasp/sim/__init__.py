@@ -21,5 +21,6 @@ from .model import build as build
 from .result import ContactEvent as ContactEvent
 from .result import PartMotion as PartMotion
 from .result import SimResult as SimResult
+from .rolling import RollingBase as RollingBase
 from .scene import SimScene as SimScene
 from .simulation import Simulation as Simulation

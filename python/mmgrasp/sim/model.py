@@ -1,7 +1,7 @@
 """The MuJoCo model of a robot, a scene and loose parts, as MJCF text. Needs no MuJoCo itself.
 
 Every collision shape becomes one geom; meshes collide as their convex hulls. The robot does not collide with itself (planned
-motions are checked for that) nor with the floor it drives on; parts collide with everything.
+motions are checked for that) nor with the floor, but for wheels it rolls on; parts collide with everything.
 """
 
 from __future__ import annotations
@@ -30,10 +30,16 @@ from .._core import (
     World,
 )
 from ..bodies import SceneBodies
+from .rolling import BASE_JOINTS, CASTER_RADIUS, ROOT_JOINT, TYRES, RollingBase
 
-ROBOT, SCENE, PART, FLOOR = 1, 2, 4, 8
-COLLIDES = {ROBOT: SCENE | PART, SCENE: ROBOT | PART, PART: ROBOT | SCENE | PART | FLOOR, FLOOR: PART}
-BASE_JOINTS = ("base/x", "base/y", "base/theta")
+ROBOT, SCENE, PART, FLOOR, WHEEL = 1, 2, 4, 8, 16
+COLLIDES = {
+    ROBOT: SCENE | PART,
+    SCENE: ROBOT | PART,
+    PART: ROBOT | SCENE | PART | FLOOR,
+    FLOOR: PART | WHEEL,
+    WHEEL: FLOOR,
+}
 JOINT_TYPES = {"revolute": "hinge", "continuous": "hinge", "prismatic": "slide"}
 
 
@@ -80,6 +86,8 @@ class Physics:
     """Largest torque of the wheels about the vertical [N m]."""
     stiffness: float = 60.0
     """Natural frequency of the arm's joint controllers, critically damped [rad/s]."""
+    rolling: RollingBase | None = None
+    """The base rolls on these wheels, which stand on the floor; None: forces move it along x, y and theta."""
     impedance: tuple[float, float] = (0.95, 0.99)
     """How hard contacts are, where bodies begin to touch and 1 mm deep, between 0 and 1 (`solimp`); light parts held firmly need more."""
 
@@ -112,10 +120,12 @@ class Built:
 
     xml: str
     joints: list[str] = field(default_factory=list)
-    """Driven joints of the robot, one actuator each, in this order; then the three of the base if it moves."""
+    """Driven joints of the robot, one actuator each, in this order; then the three of the base, or its two wheels, if it moves."""
     fingers: list[str] = field(default_factory=list)
     owner: dict[str, str] = field(default_factory=dict)
     """Link, part or scene object of each geom by its name."""
+    floor: float = 0.0
+    """Height of the floor [m]."""
 
 
 def build(
@@ -138,7 +148,9 @@ def build(
 class _Builder:
     def __init__(self, bodies: SceneBodies, loose: dict[str, SimPart], gripper: Hand | None, physics: Physics):
         self.bodies, self.robot, self.physics = bodies, bodies.robot, physics
-        self.built = Built("")
+        self.built = Built("", floor=bodies.floor)
+        if physics.rolling is not None:
+            physics.rolling.check(self.robot)
         self.meshes = 0
         self.root = ET.Element("mujoco", model=self.robot.name or "robot")
         ET.SubElement(self.root, "compiler", angle="radian", autolimits="true", inertiafromgeom="auto")
@@ -181,12 +193,19 @@ class _Builder:
             joints.setdefault(_attribute(_child(joint, "parent"), "link"), []).append(joint)
         actuators = ET.Element("actuator")
         equality = ET.Element("equality")
+        rolling = self.physics.rolling
 
         def add(parent: ET.Element, name: str, joint: ET.Element | None) -> None:
             T = np.eye(4) if joint is None else _origin(joint)
-            body = ET.SubElement(parent, "body", {"name": f"link/{name}", "gravcomp": "1", **_placed(T)})
+            carried = "1" if rolling is None else "0"  # weight has to be on the wheels: joints hold themselves up then
+            body = ET.SubElement(parent, "body", {"name": f"link/{name}", "gravcomp": carried, **_placed(T)})
             if joint is not None:
                 self._joint(body, joint, actuators, equality)
+            elif rolling is not None:
+                ET.SubElement(body, "freejoint", name=ROOT_JOINT)
+                for x, y in rolling.casters:
+                    at = {"pos": _text((x, y, rolling.height + CASTER_RADIUS)), "mass": "0", "condim": "1"}
+                    self._geom(body, name, WHEEL, 0.0, type="sphere", size=_text([CASTER_RADIUS]), **at)
             elif self.robot.base != "fixed":
                 for axis, kind, base_joint in zip(
                     ("1 0 0", "0 1 0", "0 0 1"), ("slide", "slide", "hinge"), BASE_JOINTS, strict=True
@@ -196,11 +215,15 @@ class _Builder:
             friction = self.physics.finger_friction if name in finger_links else self.physics.scene_friction
             for shape in self.robot.collisions(name):
                 self._shape(body, shape, name, ROBOT, friction)
+            if rolling is not None and joint is not None and joint.get("name") in (rolling.left, rolling.right):
+                # Crowned: it touches in a point, so that turning does not scrub.
+                rim = {"type": "sphere", "size": _text([rolling.radius]), "mass": "0", "condim": "3"}
+                self._geom(body, name, WHEEL, rolling.friction, **rim)
             for child in joints.get(name, []):
                 add(body, _attribute(_child(child, "child"), "link"), child)
 
         add(world, self.robot.links[0], None)
-        if self.robot.base != "fixed":
+        if self.robot.base != "fixed" and rolling is None:
             for name in BASE_JOINTS:
                 limit = self.physics.base_torque if name.endswith("theta") else self.physics.base_force
                 ET.SubElement(actuators, "velocity", name=name, joint=name, kv="1", forcerange=_text((-limit, limit)))
@@ -237,10 +260,13 @@ class _Builder:
         if name in self.fingers:
             force = self.physics.grip_force
             self.built.fingers.append(name)
-        actuator = ET.SubElement(actuators, "position", name=name, joint=name, kp="1", kv="1")
+        rolls = self.physics.rolling is not None and name in (self.physics.rolling.left, self.physics.rolling.right)
+        actuator = ET.SubElement(actuators, "velocity" if rolls else "position", name=name, joint=name, kv="1")
         if force > 0 and np.isfinite(force):
             actuator.set("forcerange", _text((-force, force)))
-        self.built.joints.append(name)
+        if not rolls:
+            actuator.set("kp", "1")
+            self.built.joints.append(name)
 
     def _inertia(self, body: ET.Element, link: ET.Element, joint: ET.Element | None) -> None:
         inertial = link.find("inertial")
@@ -285,6 +311,8 @@ class _Builder:
         name = f"geom{len(self.built.owner)}"
         self.built.owner[name] = owner
         given = {"name": name, "contype": str(group), "conaffinity": str(COLLIDES[group])}
+        if group == WHEEL:  # its own softness and friction count, not the floor's
+            given |= {"priority": "1", "solref": TYRES}
         ET.SubElement(body, "geom", {**given, "friction": _text((friction, 0.005, 0.0001)), **attributes})
 
 

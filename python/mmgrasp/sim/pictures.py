@@ -19,7 +19,7 @@ from ..viz.png import write_png
 from ..viz.raster import Camera, Scene, render
 from ..viz.style import FLOOR, OBSTACLE, PART, ROBOT, ROBOT_ARM
 from .control import RecordedState
-from .model import BASE_JOINTS, SimPart
+from .model import SimPart
 from .result import SimResult
 from .simulation import Simulation
 
@@ -133,8 +133,8 @@ def _mujoco_frames(sim: Simulation, states: list[RecordedState], camera: Camera)
     for state in states:
         for name, address in sim.address.items():
             data.qpos[address] = state["joints"][name]
-        for name, value in zip(BASE_JOINTS, state["base"], strict=True) if sim.moves else ():
-            data.qpos[sim.model.joint(name).qposadr[0]] = value
+        if sim.base is not None:
+            sim.base.place(state["base"], data)
         for name, T in state["parts"].items():
             at = int(sim.model.joint(f"part/{name}").qposadr[0])
             quat = np.zeros(4)

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 
 from .._core import Error, Hand, InvalidInput, Robot, World
-from .control import Command, Controller, Observer, body_to_world
-from .model import BASE_JOINTS, Physics, SimPart, build
+from .base_drive import BaseDrive, JointDrive, WheelDrive
+from .control import Command, Controller, Observer
+from .model import Physics, SimPart, build
 
 GIVE = 0.005  # a finger this far from where it should be presses with all its force [m]
 
@@ -57,8 +58,10 @@ class SimScene:
         self.actuator = {name: self.model.actuator(name).id for name in self.built.joints}
         self.address = {name: int(self.model.joint(name).qposadr[0]) for name in self.built.joints}
         self.moves = robot.base != "fixed"
-        self.base_address = [int(self.model.joint(n).qposadr[0]) for n in BASE_JOINTS] if self.moves else []
-        self.base_actuator = [self.model.actuator(n).id for n in BASE_JOINTS] if self.moves else []
+        self.base: BaseDrive | None = None
+        if self.moves:
+            rolling = self.physics.rolling
+            self.base = JointDrive(self) if rolling is None else WheelDrive(self, rolling)
         self.owner = [self.built.owner[self.model.geom(i).name] for i in range(self.model.ngeom)]
         self.is_part = [name in self.parts for name in self.owner]
 
@@ -86,7 +89,7 @@ class SimScene:
 
     def base_pose(self) -> np.ndarray:
         """(x, y, theta) now."""
-        return self.data.qpos[self.base_address].copy() if self.moves else np.zeros(3)
+        return self.base.pose() if self.base is not None else np.zeros(3)
 
     def joint(self, name: str) -> float:
         """Where a driven joint stands now [rad or m]."""
@@ -103,8 +106,8 @@ class SimScene:
         self.mujoco.mj_resetData(self.model, self.data)
         for name, value in joints.items():
             self.data.qpos[self.address[name]] = value
-        if self.moves:
-            self.data.qpos[self.base_address] = at
+        if self.base is not None:
+            self.base.place(at, self.data)
         self.mujoco.mj_forward(self.model, self.data)
         self._tune()
 
@@ -138,8 +141,8 @@ class SimScene:
                 velocity = self._apply(controller.command(time, self), actuators)
             for observer in observers:
                 observer.before(step, time, self)
-            if self.moves:
-                self.data.ctrl[self.base_actuator] = body_to_world(velocity, self.data.qpos[self.base_address[2]])
+            if self.base is not None:
+                self.base.command(velocity)
             self.mujoco.mj_step(self.model, self.data)
             if self.data.warning.number[bad].any():  # MuJoCo then goes on with zeros, or begins again
                 raise Error(f"the physics diverged after {time:.3f} s: commands beyond what the robot can do?")
@@ -166,16 +169,16 @@ class SimScene:
         return base
 
     def _tune(self) -> None:
-        """Gains from the inertia each joint carries: critically damped, the base's wheels following within 20 ms."""
+        """Gains from the inertia each joint carries: critically damped, the base following within 20 ms."""
         w = self.physics.stiffness
         for name, index in self.actuator.items():
-            inertia = self._inertia(name)
+            inertia = self.inertia(name)
             stiff = self.physics.grip_force / GIVE if name in self.built.fingers else inertia * w * w
-            self._gains(index, stiff, 2 * np.sqrt(stiff * inertia))
-        for name, index in zip(BASE_JOINTS, self.base_actuator, strict=True) if self.moves else ():
-            self._gains(index, 0.0, self._inertia(name) / 0.02)
+            self.gains(index, stiff, 2 * np.sqrt(stiff * inertia))
+        if self.base is not None:
+            self.base.tune()
 
-    def _inertia(self, joint: str) -> float:
+    def inertia(self, joint: str) -> float:
         """What a joint has to accelerate where the robot stands now [kg or kg m^2]."""
         unit, product = np.zeros(self.model.nv), np.zeros(self.model.nv)
         dof = int(self.model.joint(joint).dofadr[0])
@@ -183,7 +186,8 @@ class SimScene:
         self.mujoco.mj_mulM(self.model, self.data, product, unit)
         return float(product[dof])
 
-    def _gains(self, index: int, kp: float, kv: float) -> None:
+    def gains(self, index: int, kp: float, kv: float) -> None:
+        """Those of an actuator, by position and by velocity."""
         self.model.actuator_gainprm[index, 0] = kp if kp > 0 else kv
         self.model.actuator_biasprm[index, 1] = -kp
         self.model.actuator_biasprm[index, 2] = -kv

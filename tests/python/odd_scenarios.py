@@ -1,13 +1,16 @@
 """Odd scenarios drawn at random, planned, and their plans checked: what `plan` calls solved its own `verify` never refuses.
 
 As a script: `odd_scenarios.py [TRIES [SEED [FOLDER]]]` prints what each came to and keeps those that broke the rule. With `advice` as a last
-word each asks for more room than there is, and then for just what it was told there is.
+word each asks for more room than there is, and then for just what it was told there is. With `all` each uses many features at once
+(odd_features.py), and every third that is solved is taken in passing, too.
 """
 
 from __future__ import annotations
 
 import copy
+import faulthandler
 import re
+import shutil
 import sys
 import tempfile
 import time
@@ -20,6 +23,7 @@ from typing import Any
 import yaml
 
 import mmgrasp as mg
+from odd_features import full_scenario
 
 SCENARIOS = Path(mg.__file__).parent / "assets" / "scenarios"
 FACTORS = [0.25, 0.5, 0.8, 0.95, 1.05, 1.25, 2.0, 4.0]
@@ -51,6 +55,12 @@ def changed(number: float, draw: Random) -> float:
     return round(number * draw.choice(FACTORS), 9)
 
 
+def _change_numbers(scenario: dict[str, Any], count: int, draw: Random) -> None:
+    places = [path for path in numbers(scenario) if path[0] in TOUCHED]
+    for path in draw.sample(places, count):
+        at(scenario, path[:-1])[path[-1]] = changed(at(scenario, path), draw)
+
+
 def odd_scenario(seed: int) -> dict[str, Any]:
     """A shipped scenario with one of its trays, two targets, and one to four numbers changed."""
     draw = Random(seed)
@@ -61,16 +71,26 @@ def odd_scenario(seed: int) -> dict[str, Any]:
     if isinstance(tray.get("targets"), list):
         tray["targets"] = tray["targets"][:2]
     scenario.update(name=f"odd {seed}", trays=[tray], reach={"samples": 500_000})
-    places = [path for path in numbers(scenario) if path[0] in TOUCHED]
-    for path in draw.sample(places, draw.randint(1, 4)):
-        at(scenario, path[:-1])[path[-1]] = changed(at(scenario, path), draw)
+    _change_numbers(scenario, draw.randint(1, 4), draw)
     if draw.random() < 0.3:
         scenario["options"] = {**scenario.get("options", {}), "grid_resolution": draw.choice([0.02, 0.08, 0.1])}
     return scenario
 
 
-def try_out(scenario: dict[str, Any], folder: Path) -> tuple[str, list[str]]:
-    """What became of it ("refused" or the outcome), and the faults of a plan that is called solved."""
+def odd_full_scenario(seed: int, folder: Path) -> dict[str, Any]:
+    """Many features at once, and in one of three scenarios a number or two changed beside them."""
+    scenario = copy.deepcopy(full_scenario(seed, folder))
+    draw = Random(-seed - 1)
+    if draw.random() < 1 / 3:
+        _change_numbers(scenario, draw.randint(1, 2), draw)
+    return scenario
+
+
+def try_out(scenario: dict[str, Any], folder: Path, in_passing: bool = False) -> tuple[str, list[str]]:
+    """What became of it ("refused" or the outcome), and the faults of a plan that is called solved.
+
+    `in_passing`: the plan whose first picks are taken in passing is checked instead.
+    """
     path = folder / "scenario.yaml"
     path.write_text(yaml.safe_dump(scenario, sort_keys=False))
     try:
@@ -81,7 +101,11 @@ def try_out(scenario: dict[str, Any], folder: Path) -> tuple[str, list[str]]:
     if plan.outcome != mg.Outcome.solved:
         assert str(plan), "no plan without a word"
         return plan.outcome.name, []
-    verdict = mg.verify_plan(plan.save(folder / "plan.json"), scenario=path)
+    if in_passing:
+        mg.part_supply.plan_drive_by_picks(plan).save(folder)
+    else:
+        plan.save(folder / "plan.json")
+    verdict = mg.verify_plan(folder / "plan.json", scenario=path)
     return "solved", [str(fault) for fault in verdict.faults]
 
 
@@ -108,28 +132,35 @@ def follow_advice(scenario: dict[str, Any], folder: Path) -> tuple[str, list[str
 
 
 def main() -> int:
-    words = [word for word in sys.argv[1:] if word != "advice"]
+    words = [word for word in sys.argv[1:] if word not in ("advice", "all")]
     tries = int(words[0]) if words else 100
     seed = int(words[1]) if len(words) > 1 else 1
     kept = Path(words[2]) if len(words) > 2 else Path(tempfile.mkdtemp())
-    attempt = follow_advice if "advice" in sys.argv else try_out
+    kept.mkdir(exist_ok=True)
     outcomes: Counter[str] = Counter()
     broken = 0
     for number in range(seed, seed + tries):
-        scenario = odd_scenario(number)
+        faulthandler.dump_traceback_later(900, exit=True)  # a hang
         begun = time.monotonic()
-        with tempfile.TemporaryDirectory() as folder:
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
             try:
-                outcome, faults = attempt(scenario, Path(folder))
+                if "all" in sys.argv:
+                    scenario = odd_full_scenario(number, folder)
+                    outcome, faults = try_out(scenario, folder, in_passing=number % 3 == 0)
+                else:
+                    scenario = odd_scenario(number)
+                    outcome, faults = (follow_advice if "advice" in sys.argv else try_out)(scenario, folder)
             except Exception as error:  # what the search is for
                 outcome, faults = type(error).__name__, [str(error)]
-        outcomes[outcome] += 1
-        took = time.monotonic() - begun
-        if faults or took > 60:
-            print(f"{number}: {outcome} after {took:.0f} s; {len(faults)} faults: {faults[:3]}", flush=True)
-        if faults:
-            broken += 1
-            (kept / f"odd_{number}.yaml").write_text(yaml.safe_dump(scenario, sort_keys=False))
+            outcomes[outcome] += 1
+            took = time.monotonic() - begun
+            if faults or took > 60:
+                print(f"{number}: {outcome} after {took:.0f} s; {len(faults)} faults: {faults[:3]}", flush=True)
+            if faults:
+                broken += 1
+                shutil.copytree(folder, kept / f"odd_{number}", dirs_exist_ok=True)
+    faulthandler.cancel_dump_traceback_later()
     print(f"{tries} scenarios from seed {seed}: {dict(outcomes)}; {broken} broke the rule ({kept})")
     return 1 if broken else 0
 

@@ -15,6 +15,8 @@ namespace mmgrasp::detail {
 namespace {
 
 constexpr double kEqual = 1e-9;  // [m]
+/// Among dearer grippers, the proof of the least set (to 1e-9 of its cost) would not tell the cheap ones apart.
+constexpr double kMostTimesLeast = 1e6;
 
 /// One actuator's requirements, and the places where an opening or a finger length may be.
 class Places {
@@ -137,6 +139,13 @@ void check_actuators(const std::vector<GripperActuator>& actuators) {
     require(std::isfinite(a.stroke) && a.stroke > 0, "stroke" + of, a.stroke, "must be a positive length [m]");
     require(a.max_opening >= a.stroke, "max_opening" + of, a.max_opening, "must be at least the stroke [m]");
     require(std::isfinite(a.cost) && a.cost > 0, "cost" + of, a.cost, "must be positive");
+  }
+  const double least = std::min_element(actuators.begin(), actuators.end(), [](const auto& a, const auto& b) {
+                         return a.cost < b.cost;
+                       })->cost;
+  for (const GripperActuator& a : actuators) {
+    require(a.cost <= kMostTimesLeast * least, "cost of actuator '" + a.name + "'", a.cost,
+            "must be at most 1e6 times the least one");
   }
 }
 

@@ -2,6 +2,7 @@
 #include <sstream>
 
 #include "bindings.hpp"
+#include "mmgrasp/geometry/detail/inside_out.hpp"
 #include "mmgrasp/geometry/fit_primitives.hpp"
 #include "mmgrasp/geometry/segment_mesh.hpp"
 #include "mmgrasp/geometry/shape_diameter.hpp"
@@ -163,6 +164,12 @@ void bind_segment_mesh(py::module_& m) {
                std::to_string(s.labels.size()) + " faces, " + std::to_string(s.threads.size()) + " threads)";
       });
   m.def("_shape_diameter_option_table", [] { return option_table(diameter_fields()); });
+  m.def(
+      "_file_is_inside_out",
+      [](const PathLike& path) {
+        return interruptible([file = path_argument(path, "path")] { return detail::file_is_inside_out(file); });
+      },
+      "path"_a);
   m.def("_mesh_segmentation_option_table", [] { return option_table(mesh_segmentation_fields()); });
   m.def(
       "shape_diameters",

@@ -34,7 +34,7 @@ def test_segments_of_a_box(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -
     (segment,) = written["segments"]
     assert segment["primitive"] == "box"
     assert sorted(w["width"] for w in segment["widths"]) == pytest.approx([0.01, 0.02, 0.03], abs=1e-8)
-    assert written["labels"] == [1] * 12 and written["notes"] == []
+    assert segment["segment"] == 0 and written["labels"] == [0] * 12 and written["notes"] == []
     for picture in ("segments.png", "diameters.png"):
         assert (tmp_path / "out" / picture).read_bytes().startswith(b"\x89PNG")
 
@@ -54,6 +54,17 @@ def test_open_mesh_inside_out_is_said(tmp_path: Path, capsys: pytest.CaptureFixt
     assert not found["closed"]
     assert any("open" in note for note in found["notes"]) and any("inside out" in note for note in found["notes"])
     assert len(found["segments"][0]["widths"]) == 3
+
+
+@pytest.mark.slow
+def test_closed_mesh_inside_out_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """It is turned when it is loaded; the file is wrong all the same."""
+    for turn in (False, True):
+        part = write_stl(tmp_path / "part.stl", turn=turn)
+        assert main(["segment", str(part), "--json"]) == 0
+        found = json.loads(capsys.readouterr().out)
+        assert found["closed"] and len(found["segments"][0]["widths"]) == 3
+        assert found["notes"] == (["the mesh was inside out: its faces were turned"] if turn else [])
 
 
 @pytest.mark.parametrize(("scale", "unit"), [(1000.0, "m"), (1e-3, "m"), (1.0, "mm")])

@@ -9,7 +9,7 @@
 namespace mmgrasp::detail {
 namespace {
 
-constexpr double kSameCost = 1e-7;  // As in solve_set_cover.
+constexpr double kSameCost = 1e-12;  // Share by which sums of the same costs in another order may differ.
 
 /// Branch and bound over sets of grippers. In a set a gripper is kept for as long as one takes the next part, which
 /// needs fewest changes.
@@ -52,7 +52,7 @@ class Search {
   bool no_better(double gripper_cost, int changes) const {
     const double cost = total(std::max(gripper_cost, least_gripper_cost_), changes);
     const double best = total(best_.gripper_cost, best_.changes);
-    return cost > best + kSameCost || (cost > best - kSameCost && changes >= best_.changes);
+    return cost > best * (1 + kSameCost) || (cost > best * (1 - kSameCost) && changes >= best_.changes);
   }
 
   /// Fewest changes with these grippers at hand: every gripper is kept for as long as one that took all since the last

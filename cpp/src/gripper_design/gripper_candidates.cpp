@@ -16,6 +16,8 @@ namespace mmgrasp::detail {
 namespace {
 
 constexpr double kEqual = 1e-9;  // [m]
+/// Among dearer grippers, the proof of the least set (to 1e-9 of its cost) would not tell the cheap ones apart.
+constexpr double kMostTimesLeast = 1e6;
 
 /// One actuator's requirements, and the places where an opening or a finger length may be.
 class Places {
@@ -138,6 +140,13 @@ void check_actuators(const std::vector<GripperActuator>& actuators) {
     require_positive(a.stroke, "stroke" + of, "m");
     require(a.max_opening >= a.stroke, "max_opening" + of, a.max_opening, "must be at least the stroke [m]");
     require_positive(a.cost, "cost" + of, "", kLargestNumber);
+  }
+  const double least = std::min_element(actuators.begin(), actuators.end(), [](const auto& a, const auto& b) {
+                         return a.cost < b.cost;
+                       })->cost;
+  for (const GripperActuator& a : actuators) {
+    require(a.cost <= kMostTimesLeast * least, "cost of actuator '" + a.name + "'", a.cost,
+            "must be at most 1e6 times the least one");
   }
 }
 

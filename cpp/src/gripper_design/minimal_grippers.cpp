@@ -98,7 +98,8 @@ class Problem {
     result.lower_bound = found.proven
                              ? result.cost
                              : std::min(result.cost, cover.lower_bound + options_.change_cost * found.changes_bound);
-    const bool at_its_bounds = result.cost <= result.lower_bound + 1e-7 && result.changes == result.changes_bound;
+    const bool at_its_bounds =
+        result.cost <= result.lower_bound * (1 + 1e-12) && result.changes == result.changes_bound;
     result.outcome = found.proven || at_its_bounds ? Outcome::solved
                      : monitor.stopped()           ? Outcome::stopped
                                                    : Outcome::approximate;

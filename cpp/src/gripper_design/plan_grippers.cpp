@@ -11,6 +11,7 @@
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/core/parallel.hpp"
+#include "mmgrasp/geometry/detail/inside_out.hpp"
 #include "mmgrasp/gripper_design/operation_overlap.hpp"
 #include "mmgrasp/gripper_design/rehearse_operation.hpp"
 
@@ -81,11 +82,43 @@ std::vector<double> values_of(const std::vector<GraspRank>& ranks) {
   return out;
 }
 
+/// The operations, with open meshes that are inside out turned outwards: pads look for outward faces.
+class OutwardOperations {
+ public:
+  explicit OutwardOperations(std::vector<AssemblyOperation> operations) : operations_(std::move(operations)) {
+    for (AssemblyOperation& o : operations_) {
+      turn(o.active);
+      turn(o.passive);
+    }
+  }
+
+  const std::vector<AssemblyOperation>& operations() const { return operations_; }
+  bool turned(const TriangleMesh* mesh) const { return turned_.count(mesh) > 0; }
+
+ private:
+  void turn(std::vector<PlacedMesh>& parts) {
+    for (PlacedMesh& part : parts) {
+      std::shared_ptr<const TriangleMesh>& outward = outward_[part.mesh];
+      if (!outward) outward = turned_outwards(part.mesh);
+      if (outward != part.mesh) turned_.insert(outward.get());
+      part.mesh = outward;
+    }
+  }
+
+  std::vector<AssemblyOperation> operations_;
+  std::map<std::shared_ptr<const TriangleMesh>, std::shared_ptr<const TriangleMesh>> outward_;
+  std::set<const TriangleMesh*> turned_;
+};
+
 class Planning {
  public:
-  Planning(const std::vector<AssemblyOperation>& operations, const std::vector<GripperActuator>& actuators,
+  Planning(const OutwardOperations& outward, const std::vector<GripperActuator>& actuators,
            const PlanGrippersOptions& options, const Monitor& monitor)
-      : operations_(operations), actuators_(actuators), options_(options), monitor_(monitor) {}
+      : outward_(outward),
+        operations_(outward.operations()),
+        actuators_(actuators),
+        options_(options),
+        monitor_(monitor) {}
 
   PlanGrippersResult run(const std::vector<KeepOff>& keep_off) {
     find_boxes(keep_off);
@@ -125,6 +158,7 @@ class Planning {
       MeshSegmentationOptions segmentation;
       segmentation.diameter.threads = options_.threads;
       out.segmentation = segment_mesh(*moved[i]->mesh, segmentation, silent);
+      out.segmentation.turned = outward_.turned(moved[i]->mesh.get());
       if (!monitor_.stopped()) out.primitives = fit_primitives(*moved[i]->mesh, out.segmentation.labels, silent);
     }
   }
@@ -265,6 +299,7 @@ class Planning {
     if (met) result_.outcome = Outcome::not_found;
   }
 
+  const OutwardOperations& outward_;
   const std::vector<AssemblyOperation>& operations_;
   const std::vector<GripperActuator>& actuators_;
   const PlanGrippersOptions& options_;
@@ -296,7 +331,8 @@ PlanGrippersResult plan_grippers(const std::vector<AssemblyOperation>& operation
   options.check();
   check_operations(operations);
   check_actuators(actuators);
-  return Planning(operations, actuators, options, monitor).run(keep_off);
+  const OutwardOperations outward(operations);
+  return Planning(outward, actuators, options, monitor).run(keep_off);
 }
 
 }  // namespace mmgrasp

@@ -15,11 +15,12 @@ from .. import _core
 from .._core import InvalidInput
 from .._files import printable, write_file
 from ..scan.objects import pose_to_dict
+from ..viz.style import segment_colour
 from .console import Reporter
 from .exit_codes import DONE
 from .output_folder import LIST, OutputFolder
 
-FORMAT, VERSION = "mmgrasp-segments", 1
+FORMAT, VERSION = "mmgrasp-segments", 2
 METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inch": 0.0254}
 FILES = ("segments.json", "segments.png", "diameters.png", LIST)
 _SMALLEST, _LARGEST = 0.001, 3.0  # of a part that a gripper takes: its diagonal [m]
@@ -76,19 +77,20 @@ def segments_to_dict(
     notes = []
     if not mesh.closed:
         notes.append("the mesh is open: walls around its gaps may be joined wrongly")
-    if found.turned:
+    if found.turned or (mesh.closed and _core._file_is_inside_out(str(arguments.mesh))):
         notes.append("the mesh was inside out: its faces were turned")
     unknown = float(np.mean(found.diameters == 0))
     if unknown > _UNKNOWN_SHARE:
         notes.append(f"{100 * unknown:.0f} % of the faces have nothing behind them: the mesh may be a sheet")
     segments = []
-    for number, (segment, primitive) in enumerate(zip(found.segments, primitives, strict=True), start=1):
+    for number, (segment, primitive) in enumerate(zip(found.segments, primitives, strict=True)):
         widths = [
             {"width": w.width, "axis": [float(x) for x in w.axis], "covered": w.covered} for w in primitive.widths
         ]
         segments.append(
             {
                 "segment": number,
+                "colour": segment_colour(number),
                 "faces": len(segment.faces),
                 "area": segment.area,
                 "diameter": segment.diameter,
@@ -122,7 +124,7 @@ def segments_to_dict(
         "notes": notes,
         "threads": threads,
         "segments": segments,
-        "labels": [int(x) + 1 for x in found.labels],
+        "labels": [int(x) for x in found.labels],
     }
 
 
@@ -132,13 +134,14 @@ def _print(content: dict[str, Any], out: Path | None, console: Console) -> None:
         f"{printable(content['mesh'])}: {content['triangles']} triangles, {across} mm", markup=False, soft_wrap=True
     )
     table = Table(title="segments; sizes in mm, share of a width's contact that is surface in brackets")
-    for column in ("no.", "primitive", "size", "thickness", "volume", "widths"):
+    for column in ("no.", "", "primitive", "size", "thickness", "volume", "widths"):
         table.add_column(column, justify="right" if column in ("no.", "thickness", "volume") else "left")
     for row in content["segments"]:
         ratio = row["volume"] / row["hull_volume"] if row["hull_volume"] > 0 else float("nan")
         widths = ", ".join(f"{1e3 * w['width']:.2f} ({100 * w['covered']:.0f} %)" for w in row["widths"])
         table.add_row(
             str(row["segment"]),
+            f"[on {row['colour']}]  [/]",
             row["primitive"],
             " x ".join(f"{1e3 * x:.2f}" for x in row["size"]),
             f"{1e3 * row['diameter']:.2f}",
@@ -154,6 +157,11 @@ def _print(content: dict[str, Any], out: Path | None, console: Console) -> None:
             markup=False,
             soft_wrap=True,
         )
+    console.print(
+        "mmgrasp grippers: `keep_off: [no., ...]` of a part keeps fingers off its segments",
+        markup=False,
+        soft_wrap=True,
+    )
     for note in content["notes"]:
         console.print(f"note: {note}", markup=False, soft_wrap=True)
     if out is not None:

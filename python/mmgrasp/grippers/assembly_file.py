@@ -21,6 +21,7 @@ Pose = NDArray[np.float64]
 
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001}
 LARGEST_PART, SMALLEST_PART = 2.0, 0.0005  # [m]
+MOST_TRIANGLES = 1_000_000  # of a part: segments and grasps take minutes beyond
 FINGER_DEFAULTS: dict[str, Any] = {name: value for name, (value, _) in _core._plan_grippers_option_table().items()}
 LOAD_DEFAULTS = HoldingRequirement(FingerGrip())
 SET_OPTIONS = ("change_cost", "time_limit", "max_nodes", "max_overlap")
@@ -39,6 +40,8 @@ class AssemblyPart:
     keep_off_boxes: list[tuple[Pose, NDArray[np.float64]]] = field(default_factory=list)
     """Boxes whose surface no finger may touch: T_mesh_box of the middle, size [m]."""
     source: str = ""
+    inside_out: bool = False
+    """As its file has it: its faces were turned."""
 
 
 @dataclass
@@ -198,9 +201,15 @@ def _read_part(node: Node, scale: float, unit: str) -> AssemblyPart:
             f"is {size:.4g} m from corner to corner with unit: {unit}; parts from {SMALLEST_PART:g} to {LARGEST_PART:g} m "
             "can be held: is another unit meant?"
         )
+    if len(mesh.triangles) > MOST_TRIANGLES:
+        node[kinds[0]].fail(
+            f"has {len(mesh.triangles):,} triangles: parts of up to {MOST_TRIANGLES:,} can be planned for; "
+            "export it coarser (0.01 mm off is nothing to a finger)"
+        )
     segments, boxes = _read_keep_off(node, scale)
     pose = _pose(node["pose"], scale) if "pose" in node else np.eye(4)
-    return AssemblyPart(name, mesh, pose, segments, boxes, source)
+    inside_out = bool(source) and _core._file_is_inside_out(source)
+    return AssemblyPart(name, mesh, pose, segments, boxes, source, inside_out)
 
 
 def _read_keep_off(part: Node, scale: float) -> tuple[list[int], list[tuple[Pose, NDArray[np.float64]]]]:

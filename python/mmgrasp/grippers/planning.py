@@ -57,11 +57,10 @@ class GripperPlan:
         """What is wrong with the parts' meshes, and what was mended."""
         out = []
         for name, part in self.assembly.parts.items():
-            if part.mesh.closed:
-                continue
-            turned = name in self.segmentations and self.segmentations[name].turned
-            mended = "; it was inside out, its faces were turned" if turned else ""
-            out.append(f"{name}: the mesh is open: it has no inside that others could be seen to stand in{mended}")
+            if not part.mesh.closed:
+                out.append(f"{name}: the mesh is open: it has no inside that others could be seen to stand in")
+            if part.inside_out:
+                out.append(f"{name}: the mesh was inside out: its faces were turned")
         return out
 
     @property

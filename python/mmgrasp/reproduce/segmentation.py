@@ -12,7 +12,8 @@ import numpy as np
 
 from .._core import Mesh, fit_primitives, segment_mesh, shape_diameters
 from ..grippers.motor import PARTS, ROTOR, SLEEVE, Composed
-from ..viz.segment_pictures import coloured, diameter_bodies, segment_colour
+from ..viz.segment_pictures import coloured, diameter_bodies
+from ..viz.style import segment_colour
 from ..viz.two_sides import two_sides
 from .drawing import figure
 from .entry import Context, Entry, Result

@@ -12,8 +12,8 @@ from .. import _core
 from .._core import Gripper
 from ..grippers.planning import GripperPlan
 from .png import write_png
-from .segment_pictures import coloured, segment_colour
-from .style import OBSTACLE, PART, ROBOT_ARM
+from .segment_pictures import coloured
+from .style import OBSTACLE, PART, ROBOT_ARM, segment_colour
 from .two_sides import FROM_ABOVE_AND_ASIDE, Body, Points, two_sides
 
 SIDE = 520

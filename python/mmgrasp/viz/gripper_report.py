@@ -44,7 +44,7 @@ def proof(plan: GripperPlan) -> str:
     result = plan.result
     if result is None or not result.grippers:
         return "no set of grippers"
-    if result.lower_bound >= result.cost - 1e-7:
+    if result.lower_bound >= result.cost * (1 - 1e-9):
         changes = "" if result.changes_bound < result.changes else ", nor fewer changes"
         return f"proven: no set of grippers costs less{changes}"
     return f"not proven: a set might cost {result.lower_bound:g}"
@@ -118,7 +118,7 @@ def _operations(plan: GripperPlan, pictures: Path | None) -> str:
         gripper = result.grippers[result.gripper_of_part[i]].name
         row = [escape(part), escape(gripper), escape(r.segment), _millimetres(r.opening), least + most]
         rows.append(row + _held(plan.holdings[result.requirement_of_part[i]]))
-    head = ["Operation", "Gripper", "HeldLoad by", "Opening [mm]", "Fingers [mm]"]
+    head = ["Operation", "Gripper", "Held by", "Opening [mm]", "Fingers [mm]"]
     if plan.assembly.holding is not None:
         head += ["Load may grow by", "Moment of the insertion [N m]", "Torque a pad holds [N m]", "A pad touches [mm²]"]
     out += table(head, rows, {3, 5, 6, 7, 8})

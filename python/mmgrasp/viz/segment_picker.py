@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..grippers.planning import GripperPlan
-from .segment_pictures import segment_colour
+from .style import segment_colour
 
 SCRIPT = Path(__file__).with_suffix(".js")
 STYLE = """

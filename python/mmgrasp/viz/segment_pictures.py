@@ -2,24 +2,16 @@
 
 from __future__ import annotations
 
-import colorsys
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 
 from .png import write_png
-from .style import TRAY_COLOURS
+from .style import hue_colour, segment_colour
 from .two_sides import Body, two_sides
 
 _SHADES = 12
-
-
-def segment_colour(index: int) -> str:
-    """Eight colours that everybody can tell apart, then others around the circle."""
-    if index < len(TRAY_COLOURS):
-        return TRAY_COLOURS[index]
-    return _hex(colorsys.hsv_to_rgb((0.618 * index) % 1, 0.45, 0.8))
 
 
 def coloured(
@@ -47,10 +39,6 @@ def diameter_bodies(vertices: np.ndarray, triangles: np.ndarray, diameters: np.n
         shades = np.clip(share * _SHADES, 0, _SHADES - 1).astype(int)
 
     def shade(index: int) -> str:
-        return _hex(colorsys.hsv_to_rgb(0.66 * (1 - index / (_SHADES - 1)), 0.75, 0.9))
+        return hue_colour(0.66 * (1 - index / (_SHADES - 1)), 0.75, 0.9)
 
     return coloured(vertices, triangles, shades, shade)
-
-
-def _hex(colour: tuple[float, float, float]) -> str:
-    return "#" + "".join(f"{round(255 * c):02X}" for c in colour)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import colorsys
+
 TRAY_COLOURS = ["#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#B8A600", "#7A5195"]
 STOP = "#C1121F"
 ROUTE = "#333333"
@@ -16,6 +18,17 @@ FLOOR = "#F2F1ED"
 def tray_colour(index: int) -> str:
     """Colour of the tray at this place in the plan's list of trays."""
     return TRAY_COLOURS[index % len(TRAY_COLOURS)]
+
+
+def segment_colour(index: int) -> str:
+    """Colour of a part's segment: eight that everybody can tell apart, then others around the circle."""
+    return TRAY_COLOURS[index] if index < len(TRAY_COLOURS) else hue_colour((0.618 * index) % 1, 0.45, 0.8)
+
+
+def hue_colour(hue: float, saturation: float, value: float) -> str:
+    """'#RRGGBB' of numbers in [0, 1]."""
+    red, green, blue = (round(255 * c) for c in colorsys.hsv_to_rgb(hue, saturation, value))
+    return f"#{red:02X}{green:02X}{blue:02X}"
 
 
 def rgb(colour: str) -> tuple[float, float, float]:

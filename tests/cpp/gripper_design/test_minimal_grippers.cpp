@@ -211,6 +211,40 @@ TEST(MinimalGrippers, EqualsTryingEverySet) {
   EXPECT_GT(several_changes, 60);
 }
 
+TEST(MinimalGrippers, CostsInAnyUnitHaveTheSameAnswer) {
+  Rng rng(11);
+  for (int trial = 0; trial < 60; ++trial) {
+    std::vector<SegmentRequirement> requirements;
+    for (int p = 0; p < 7; ++p) {
+      for (int s = 0; s < 2; ++s)
+        requirements.push_back(
+            segment(std::to_string(p), 2, rng.uniform(0.005, 0.08), rng.uniform(0.01, 0.03), rng.uniform(0.03, 0.08)));
+    }
+    std::vector<GripperActuator> actuators{
+        {"a", 2, 0.012, 0.1, 1}, {"b", 2, 0.025, 0.1, 2}, {"c", 2, 0.04, 0.1, trial % 2 ? 3 : 2.77}};
+    MinimalGrippersOptions options;
+    options.change_cost = trial % 3 ? 0 : 0.3;
+    const auto [cost, changes] = BruteForce(requirements, actuators, options).least(options.change_cost);
+    for (const double unit : {1e-12, 1.0, 1e12}) {
+      std::vector<GripperActuator> priced = actuators;
+      MinimalGrippersOptions other = options;
+      for (GripperActuator& a : priced) a.cost *= unit;
+      other.change_cost *= unit;
+      other.time_limit = 20;
+      const MinimalGrippersResult r = minimal_grippers(requirements, priced, other);
+      ASSERT_EQ(r.outcome, Outcome::solved) << trial << " " << unit;
+      EXPECT_NEAR(r.cost / unit, cost, 1e-9) << trial << " " << unit;
+      EXPECT_EQ(r.changes, changes) << trial << " " << unit;
+    }
+  }
+}
+
+TEST(MinimalGrippers, RefusesCostsThatTheProofWouldNotTellApart) {
+  const std::vector<SegmentRequirement> requirements{segment("a", 2, 0.02)};
+  EXPECT_THROW(minimal_grippers(requirements, {{"cheap", 2, 0.01, kInfinite, 1}, {"dear", 2, 0.01, kInfinite, 1.1e6}}),
+               InvalidInput);
+}
+
 TEST(MinimalGrippers, GridIsNeverBetterThanExact) {
   const auto requirements = figure_5_13(0.55);
   for (const int n : {2, 5, 20, 100}) {

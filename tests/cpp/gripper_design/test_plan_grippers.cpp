@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include "gripper_design/simple_parts.hpp"
@@ -51,6 +52,29 @@ TEST(PlanGrippers, ARingOnAPegGetsOneGripperThatWasRehearsed) {
   EXPECT_NEAR(found.grasps[taken].contact_length, 0.0115, 1e-4);
   EXPECT_NEAR(found.requirements[taken].min_finger_length, 0.0315, 1e-4);
   EXPECT_NEAR(gripper.finger_length, 0.0325, 1e-4);
+}
+
+TEST(PlanGrippers, OpenMeshesInsideOutAreHeldAsIfTheyWereNot) {
+  // One triangle is missing in the ring's bore, and all look inwards, as exports of surfaces do.
+  std::vector<AssemblyOperation> order = ring_on_peg();
+  TriangleMesh ring = *order[0].active[0].mesh;
+  const auto in_bore = [&](const std::array<int, 3>& t) {
+    return std::all_of(t.begin(), t.end(), [&](int v) { return ring.vertices[v].head<2>().norm() < 0.0051; });
+  };
+  ring.triangles.erase(std::find_if(ring.triangles.begin(), ring.triangles.end(), in_bore));
+  for (const bool inside_out : {false, true}) {
+    auto triangles = ring.triangles;
+    for (auto& t : triangles) {
+      if (inside_out) std::swap(t[1], t[2]);
+    }
+    const auto open = make_mesh(ring.vertices, triangles);
+    ASSERT_FALSE(open->closed);
+    order[0].active[0].mesh = open;
+    const PlanGrippersResult found = plan_grippers(order, kChuck);
+    ASSERT_EQ(found.outcome, Outcome::solved) << inside_out;
+    EXPECT_EQ(found.parts.at("ring").segmentation.turned, inside_out);
+    EXPECT_NEAR(found.set->grippers[0].finger_length, 0.0325, 1e-4) << inside_out;
+  }
 }
 
 TEST(PlanGrippers, DeepGraspsGiveWayWhereFingersAreShort) {

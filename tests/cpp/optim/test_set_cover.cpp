@@ -207,6 +207,38 @@ TEST(SetCover, TinyCostDifferencesDecide) {
   }
 }
 
+TEST(SetCover, CostsInAnyUnitHaveTheSameAnswer) {
+  // Rings, where no reduction applies; whole numbers, and costs that are none.
+  Rng rng(5);
+  for (int repeat = 0; repeat < 30; ++repeat) {
+    SetCoverProblem problem;
+    problem.elements = 7;
+    for (int s = 0; s < 14; ++s) {
+      problem.sets.push_back({s % 7, (s + 1 + s / 7) % 7});
+      problem.costs.push_back(repeat % 2 ? rng.uniform(0.5, 2) : 1.0 + static_cast<double>(rng.index(5)));
+    }
+    const double least = brute_force(problem);
+    for (const double unit : {1e-12, 1e-3, 1.0, 1e6, 1e12, 1e100}) {
+      SetCoverProblem other = problem;
+      for (double& cost : other.costs) cost *= unit;
+      const SetCoverResult result = solve_set_cover(other, 20);
+      EXPECT_EQ(result.outcome, Outcome::solved) << repeat << " " << unit;
+      EXPECT_NEAR(result.cost / unit, least, 1e-9) << repeat << " " << unit;
+    }
+  }
+}
+
+TEST(SetCover, CostsOfVeryDifferentSizes) {
+  // The dear set is worth it or not by one cheap one: a difference of one in a million.
+  SetCoverProblem problem;
+  problem.elements = 3;
+  problem.sets = {{0, 1, 2}, {0, 1}, {1, 2}, {0, 2}, {0}, {1}, {2}};
+  problem.costs = {2e6 + 1, 1e6, 1e6, 1e6, 1e6 + 2, 1e6 + 2, 1e6 + 2};
+  EXPECT_EQ(solve_set_cover(problem).cost, 2e6);
+  problem.costs[0] = 2e6 - 1;
+  EXPECT_EQ(solve_set_cover(problem).chosen, std::vector<int>{0});
+}
+
 TEST(SetCover, TimeLimitLeavesACoverAndAValidBound) {
   std::ifstream in(std::string(MMGRASP_SHARED_DATA) + "/reference/orlib_scp/scp61.txt");
   if (!in) GTEST_SKIP() << "OR-Library files are not here";
@@ -303,6 +335,9 @@ TEST(SetCover, RefusesBadInput) {
   problem.costs = {1.0, 1.0};
   EXPECT_THROW(solve_set_cover(problem), InvalidInput);
   problem.costs = {std::nan("")};
+  EXPECT_THROW(solve_set_cover(problem), InvalidInput);
+  problem.sets = {{0}, {1}};
+  problem.costs = {1.0, 1.1e9};
   EXPECT_THROW(solve_set_cover(problem), InvalidInput);
 }
 

@@ -19,7 +19,7 @@ struct MMGRASP_EXPORT GripperActuator {
   int fingers = 2;                                               ///< 2 or 3.
   double stroke = 0;                                             ///< Largest less smallest opening [m], > 0.
   double max_opening = std::numeric_limits<double>::infinity();  ///< As wide as fingers can be mounted [m], >= stroke.
-  double cost = 1;                                               ///< Cost of a gripper with this drive, > 0.
+  double cost = 1;  ///< Cost of a gripper with this drive, > 0; at most 1e6 times the least one.
 };
 
 /// Which fingers can be made, what a change of grippers costs, and how long minimal_grippers() searches.

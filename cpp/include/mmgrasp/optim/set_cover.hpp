@@ -14,11 +14,12 @@ namespace mmgrasp {
 ///
 /// "As few sets as possible, and of those the best" is one problem: costs 1 + p_s with penalties p_s >= 0 that sum to
 /// less than 1 over all sets, e.g. p_s = (1 - r_s / r_max) / (2 n) for n sets that should have large radii r_s. Then no
-/// saving in penalties pays for another set. Totals that differ by less than about 1e-7 may count as equal.
+/// saving in penalties pays for another set. Totals that differ by less than about 1e-7 of the least cost, or 1e-9 of
+/// their own, may count as equal.
 struct MMGRASP_EXPORT SetCoverProblem {
   int elements = 0;
   std::vector<std::vector<int>> sets;  ///< Elements of each set, in [0, elements).
-  std::vector<double> costs;           ///< One per set, > 0; empty means 1 each.
+  std::vector<double> costs;           ///< One per set, > 0, at most 1e9 times the least; empty means 1 each.
   void check() const;
 };
 

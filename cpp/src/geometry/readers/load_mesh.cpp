@@ -4,9 +4,11 @@
 #include <cmath>
 #include <filesystem>
 
+#include "geometry/faces_inwards.hpp"
 #include "geometry/readers/mesh_readers.hpp"
 #include "mmgrasp/core/detail/file_content.hpp"
 #include "mmgrasp/core/limits.hpp"
+#include "mmgrasp/geometry/detail/inside_out.hpp"
 
 namespace mmgrasp {
 
@@ -46,6 +48,11 @@ std::shared_ptr<const TriangleMesh> detail::parse_mesh(const std::string& path, 
   auto mesh = detail::clean_mesh(std::move(raw), path, report);
   if (mesh->triangles.empty()) detail::mesh_error(path, "holds no triangle with an area");
   return mesh;
+}
+
+bool detail::file_is_inside_out(const std::string& path) {
+  const RawMesh raw = read_mesh(path, file_content(path, "mesh file"));
+  return faces_inwards(raw.vertices, raw.triangles);
 }
 
 std::shared_ptr<const TriangleMesh> load_mesh(const std::string& path, const Eigen::Vector3d& scale,

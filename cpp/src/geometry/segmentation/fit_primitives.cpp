@@ -8,8 +8,8 @@
 #include <string>
 
 #include "geometry/segmentation/segment_surface.hpp"
-#include "geometry/segmentation/turn_outwards.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/geometry/detail/inside_out.hpp"
 
 namespace mmgrasp {
 namespace {

@@ -13,9 +13,9 @@
 #include "geometry/segmentation/inner_walls.hpp"
 #include "geometry/segmentation/join_regions.hpp"
 #include "geometry/segmentation/surface_creases.hpp"
-#include "geometry/segmentation/turn_outwards.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/limits.hpp"
+#include "mmgrasp/geometry/detail/inside_out.hpp"
 
 namespace mmgrasp {
 namespace {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 #include <string>
 
@@ -19,6 +20,25 @@ constexpr int kPriceSteps = 3000;
 constexpr double kSearchWork = 5e6;     // Entries of the problem checked in search of a better cover.
 constexpr double kShrunk = 0.8;         // Prices are sought again when no more than this share of the sets is left.
 constexpr double kLeastSeconds = 1e-3;  // CBC gets this much time, however late it is.
+
+constexpr double kWholeNumbers = 1e9;    // Costs below that are compared as whole numbers (all_integral).
+constexpr double kMostTimesLeast = 1e9;  // Cheaper sets would vanish in the roundings of dear ones.
+
+/// What costs are counted in, so that the tolerances of prices and of CBC are small beside them: the common factor of
+/// whole numbers, else the power of two (it rounds nothing) below the least one.
+double cost_unit(const std::vector<double>& costs) {
+  const auto [least, most] = std::minmax_element(costs.begin(), costs.end());
+  std::int64_t factor = 0;
+  for (const double c : costs) {
+    if (c != std::floor(c) || c > 9e15) {
+      factor = 0;
+      break;
+    }
+    factor = std::gcd(factor, static_cast<std::int64_t>(c));
+  }
+  if (factor > 0 && *most / static_cast<double>(factor) < kWholeNumbers) return static_cast<double>(factor);
+  return std::exp2(std::ilogb(*least));
+}
 
 double cost_of(const SetCoverProblem& problem, int set) {
   return problem.costs.empty() ? 1.0 : problem.costs[set];
@@ -205,6 +225,9 @@ void SetCoverProblem::check() const {
   for (std::size_t s = 0; s < costs.size(); ++s) {
     require_positive(costs[s], "costs[" + std::to_string(s) + "]", "", kLargestNumber);
   }
+  const auto [least, most] = std::minmax_element(costs.begin(), costs.end());
+  require(*most <= kMostTimesLeast * *least, "costs[" + std::to_string(most - costs.begin()) + "]", *most,
+          "must be at most 1e9 times the least one");
 }
 
 SetCoverResult solve_set_cover(const SetCoverProblem& problem, double time_limit, const Monitor& monitor) {
@@ -216,7 +239,11 @@ SetCoverResult solve_set_cover(const SetCoverProblem& problem, double time_limit
     result.outcome = Outcome::infeasible;
     return result;
   }
-  Solver::Answer answer = Solver(time_limit, monitor).solve(problem);
+  const double unit = problem.costs.empty() ? 1 : cost_unit(problem.costs);
+  SetCoverProblem counted = problem;
+  for (double& cost : counted.costs) cost /= unit;
+  Solver::Answer answer = Solver(time_limit, monitor).solve(counted);
+  answer.bound *= unit;
   std::sort(answer.chosen.begin(), answer.chosen.end());
   result.chosen = std::move(answer.chosen);
   result.cost = cost_of(problem, result.chosen);

@@ -110,6 +110,7 @@ ELSEWHERE = {
     "checked distances": 'test_plan_check.cpp: codes_of(plan).count("too-long")',
     "speed of a joint": "test_scenario.py: def test_joints_that_crawl_are_refused(",
     "samples of a motion": "test_time_parameterization.cpp: RefusesMoreSamplesThanMemoryHolds)",
+    "other numbers of calls": "test_bad_arguments.py: def test_bad_arrays_are_refused_by_name(",
     "options of scenarios, pipe problems and commands": "test_option_bounds.py: def test_a_scenario_is_refused_at_the_line(",
 }
 """Rows that are no number to step over, or that only the library's own tests can: the file and the test's opening."""

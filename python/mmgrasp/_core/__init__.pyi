@@ -1657,7 +1657,7 @@ class CapabilityMap:
         """
     def __repr__(self) -> str:
         ...
-    def best_base_distance(self, T_world_tips: numpy.typing.ArrayLike, distances: collections.abc.Sequence[float], heading: float = 0.0, cone: float = 4.0) -> tuple[float, float, list[float]]:
+    def best_base_distance(self, T_world_tips: numpy.typing.ArrayLike, distances: numpy.typing.ArrayLike, heading: float = 0.0, cone: float = 4.0) -> tuple[float, float, list[float]]:
         """
         Which distance [m] to stand behind the poses' middle, facing along `heading` [rad]:
         (distance, score, scores of all).
@@ -1828,7 +1828,7 @@ class Grasp:
         grasp = mg.Grasp(mg.pose([0, 0, 0.05], rpy=[0, np.pi / 2, 0]), opening=0.04)
         T_world_hand = T_world_object @ grasp.T_object_hand
     """
-    def __init__(self, T_object_hand: numpy.typing.ArrayLike, opening: float = 0.0, *, cost: float = 0.0, quality: float = 1.0, posture: collections.abc.Sequence[float] = []) -> None:
+    def __init__(self, T_object_hand: numpy.typing.ArrayLike, opening: float = 0.0, *, cost: float = 0.0, quality: float = 1.0, posture: numpy.typing.ArrayLike = ()) -> None:
         """
         Pose of the hand's tool frame in the object's frame (4, 4); distance between the fingers while holding [m]; cost that
         planners add to their path's length; quality in [0, 1]; for a hand with several joint groups how far each is open, in [0, 1].
@@ -2883,7 +2883,7 @@ class Tray:
     """
     A tray and the parts in it; its walls are scene objects.
     """
-    def __init__(self, name: str, T_world_tray: numpy.typing.ArrayLike, size: numpy.typing.ArrayLike, parts: collections.abc.Sequence[Part], headings: collections.abc.Sequence[float] = []) -> None:
+    def __init__(self, name: str, T_world_tray: numpy.typing.ArrayLike, size: numpy.typing.ArrayLike, parts: collections.abc.Sequence[Part], headings: numpy.typing.ArrayLike = ()) -> None:
         """
         `T_world_tray` (4, 4): middle of the tray's floor, a robot in front of it looks along its +x; `size` (3,): depth,
         width, height [m]; `headings` of the base that are tried [rad], none given: the one that faces the tray.
@@ -3030,7 +3030,7 @@ class BaseGrid:
     @staticmethod
     def _from_state(state: tuple[typing.Any, ...]) -> BaseGrid:
         ...
-    def __init__(self, origin: numpy.typing.ArrayLike, resolution: float, nx: int, ny: int, headings: collections.abc.Sequence[float] = [0.0]) -> None:
+    def __init__(self, origin: numpy.typing.ArrayLike, resolution: float, nx: int, ny: int, headings: numpy.typing.ArrayLike = (0.0,)) -> None:
         """
         `origin` (2,) is the lower corner of cell (0, 0) [m], `resolution` the edge of a cell [m], nx and ny the
         cells along x and y, `headings` one layer each [rad], distinct.
@@ -6803,6 +6803,8 @@ def _drive_by_option_table() -> dict[str, typing.Any]:
     ...
 def _edge_option_table() -> dict[str, typing.Any]:
     ...
+def _file_is_inside_out(path: str | os.PathLike[str]) -> bool:
+    ...
 def _first_drive_by_guess(group: JointGroup, *, start: numpy.typing.ArrayLike, tasks: collections.abc.Sequence[DriveByTask], goal: numpy.typing.ArrayLike, waypoints: int = 35) -> typing.Any:
     """
     The guess of the first seed, for benchmarks against other optimisers; None when a task is out of reach. solve() takes it from there, judging included: whether it is solved, the duration, processor seconds that judging once more took, and iterations.
@@ -7736,7 +7738,7 @@ def share_headings(problem: PartSupplyProblem, database: ReachDatabase, grid: Ba
     The regions of compute_base_regions, and besides where trays that list no headings can be served at another tray's
     heading, in the cells where that one is served: trays that face each other get stops in common.
     """
-def share_stops(drive_times: numpy.typing.ArrayLike, stop_times: collections.abc.Sequence[float], robots: int) -> SharedTours:
+def share_stops(drive_times: numpy.typing.ArrayLike, stop_times: numpy.typing.ArrayLike, robots: int) -> SharedTours:
     """
     Shares stops among robots so that the last is done as early as can be. `drive_times` is (n + 2 k, n + 2 k): stops, k starts, k goals; infinite: no way.
     """
@@ -7798,7 +7800,7 @@ def solve_nonlinear(problem: NonlinearProblem, guess: numpy.typing.ArrayLike, *,
         barrier: float = 0.0  # ipopt: the first barrier parameter, lowered steadily; 0: chosen in each step
         warm_start: float = 0.0  # ipopt: 0 starts afresh; else the guess is trusted and the barrier parameter begins with this
     """
-def solve_set_cover(elements: int, sets: collections.abc.Sequence[collections.abc.Sequence[int]], costs: collections.abc.Sequence[float] = [], *, time_limit: float = 60.0, progress: collections.abc.Callable[[str, float], typing.Any] | None = None) -> SetCoverResult:
+def solve_set_cover(elements: int, sets: collections.abc.Sequence[collections.abc.Sequence[int]], costs: numpy.typing.ArrayLike = (), *, time_limit: float = 60.0, progress: collections.abc.Callable[[str, float], typing.Any] | None = None) -> SetCoverResult:
     """
     Fewest (or cheapest) sets that cover all of 0..elements-1, with a proof (P1, equation 3.1).
     """

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "mmgrasp/core/error.hpp"
-#include "mmgrasp/core/limits.hpp"
 #include "verify/context.hpp"
 
 namespace mmgrasp::verify {
@@ -78,7 +77,7 @@ class PathWalk {
 }  // namespace
 
 PathCheckResult check_path(const PathToCheck& path, double joint_step) {
-  require_positive(joint_step, "joint_step", "rad or m");
+  require(joint_step > 0 && joint_step <= 1e6, "joint_step", joint_step, "must be positive, at most 1e6 [rad or m]");
   require(!path.waypoints.empty(), "waypoints", "[]", "must hold at least one configuration");
   const auto robot = std::make_shared<const RobotModel>(read_robot(path.robot));
   const ArmSetup setup = setup_of(path, *robot);

@@ -39,10 +39,13 @@ class MMGRASP_EXPORT PathShortcutting {
   /// Moves the vertices between two others towards the straight line between those, in a random choice of joints alone
   /// (as partial shortcuts, Geraerts and Overmars 2007).
   bool shortcut_some_joints(Rng& rng, int grasp);
+  enum class Replaced { yes, blocked, not_shorter };
   /// Puts the configurations `made_` between two vertices in place of those there, when that is free and shorter.
-  bool replace(int grasp, std::size_t first, std::size_t last);
+  Replaced replace(int grasp, std::size_t first, std::size_t last);
   /// How far a shortcut goes, in (0, 1].
   static double draw_share(Rng& rng);
+  /// Moves q_, which was made of a corner, out of it by `length` along its bisector.
+  void lift_out(std::size_t corner, double length);
   /// A new configuration on the edge from a corner to a neighbour, `share` of its length away from the corner, moved
   /// out of the corner along its bisector by about `lift` of that length.
   int point_beside_edge(std::size_t corner, std::size_t neighbour, double share, double lift);

@@ -308,7 +308,7 @@ TEST_P(TransferWeights, ReachTheExactOptimum) {
   options.rrt.max_iterations = 4000;
   const ManipulationResult result = plan_manipulation(scene.problem, options);
   ASSERT_EQ(result.outcome, Outcome::solved);
-  EXPECT_GT(result.cost, scene.optimum * (1 - 1e-6));
+  EXPECT_GT(result.cost, scene.optimum * (1 - 1e-4));  // Between two steps of its check a path may cut a corner.
   EXPECT_LT(result.cost, scene.optimum * (GetParam() == "prm_star_mg" ? 1.03 : 1.01));
 }
 

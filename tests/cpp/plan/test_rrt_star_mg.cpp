@@ -72,6 +72,8 @@ TEST(RrtStarMg, EverySwitchLeavesPathsSound) {
       }
 }
 
+constexpr unsigned kRuns = 10;
+
 /// Where the trees of a few runs grew.
 struct Growth {
   double all = 0, from_goals = 0;
@@ -92,14 +94,14 @@ double nearest_root(const std::vector<SearchTree>& trees, int grasp, bool from_g
 Growth growth_with(const std::function<void(RrtStarMgOptions&)>& change) {
   const ManipulationProblem problem = bar_transfer();
   Growth out;
-  for (unsigned seed = 1; seed <= 3; ++seed) {
+  for (unsigned seed = 1; seed <= kRuns; ++seed) {
     ManipulationOptions options = tree_options(1500);
     options.seed = seed;
     options.rrt.keep_trees = true;
     change(options.rrt);
     const ManipulationResult result = plan_manipulation(problem, options);
     EXPECT_EQ(result.stats.samples, 1500u);
-    out.cost += result.cost / 3;
+    out.cost += result.cost / kRuns;
     for (const SearchTree& tree : result.trees)
       for (std::size_t i = 0; i < tree.parents.size(); ++i) {
         if (tree.parents[i] < 0) continue;

@@ -8,6 +8,8 @@ namespace mmgrasp::detail {
 namespace {
 
 constexpr double kLeastShare = 1e-5;  // Corners are not cut closer than this share of an edge.
+constexpr double kHidden =
+    3e-4;  // By about so much an edge may cut a corner unseen [rad or m]: a step of the final check.
 constexpr double kLiftProbability = 0.5;
 
 }  // namespace
@@ -71,13 +73,16 @@ int PathShortcutting::improve_randomly(Rng& rng, int grasps) {
 
 bool PathShortcutting::shortcut_corner(Rng& rng, int grasp) {
   const std::size_t corner = 1 + rng.index(vertices_.size() - 2);
-  const double lift = draw_lift(rng);
+  // Between two steps of its check an edge may cut a corner of an obstacle, and nothing near it passes the check again:
+  // no part of it, and no edge with the same ends in some joints. Points on the side away from the obstacle do, and
+  // cost next to nothing.
+  const double lift = rng.uniform() < kLiftProbability ? std::pow(kLeastShare, rng.uniform()) : 0;
   made_.clear();
   for (const std::size_t neighbour : {corner - 1, corner + 1}) {
     const double share = draw_share(rng);
     if (share < 1) made_.push_back(point_beside_edge(corner, neighbour, share, lift));
   }
-  return replace(grasp, corner - 1, corner + 1);
+  return replace(grasp, corner - 1, corner + 1) == Replaced::yes;
 }
 
 // An obstacle that holds a corner in some joints leaves it free to move in the others. Corners close to each other can
@@ -85,7 +90,7 @@ bool PathShortcutting::shortcut_corner(Rng& rng, int grasp) {
 bool PathShortcutting::shortcut_some_joints(Rng& rng, int grasp) {
   const std::size_t first = rng.index(vertices_.size() - 2);
   const std::size_t last = first + 2 + rng.index(vertices_.size() - first - 2);
-  const double share = draw_share(rng), lift = draw_lift(rng);
+  const double share = draw_share(rng);
   const int d = trees_.ends().dimension();
   for (int k = 0; k < d; ++k) moves_[k] = rng.uniform() < 0.5 ? share : 0;
   const JointMetric& metric = trees_.ends().metric();
@@ -95,32 +100,40 @@ bool PathShortcutting::shortcut_some_joints(Rng& rng, int grasp) {
   metric.unroll(way);
   double whole = 0, passed = 0;
   for (std::size_t i = first; i < last; ++i) whole += trees_.vertex_distance(vertices_[i], vertices_[i + 1]);
-  made_.clear();
-  for (std::size_t i = first + 1; i < last; ++i) {
-    passed += trees_.vertex_distance(vertices_[i - 1], vertices_[i]);
-    const Eigen::VectorXd &from = way.front(), &to = way.back(), &own = way[i - first];
-    for (int k = 0; k < d; ++k) q_[k] = own[k] + moves_[k] * (from[k] + passed / whole * (to[k] - from[k]) - own[k]);
-    lift_out(i, lift * whole);
-    metric.wrap(q_.data());
-    made_.push_back(trees_.add_configuration(q_.data()));
-  }
-  return replace(grasp, first, last);
+  if (!(whole > 0)) return false;  // vertices in one place
+  const auto replace_lifted = [&](double lift) {
+    made_.clear();
+    passed = 0;
+    for (std::size_t i = first + 1; i < last; ++i) {
+      passed += trees_.vertex_distance(vertices_[i - 1], vertices_[i]);
+      const Eigen::VectorXd &from = way.front(), &to = way.back(), &own = way[i - first];
+      for (int k = 0; k < d; ++k) q_[k] = own[k] + moves_[k] * (from[k] + passed / whole * (to[k] - from[k]) - own[k]);
+      lift_out(i, lift * whole);
+      metric.wrap(q_.data());
+      made_.push_back(trees_.add_configuration(q_.data()));
+    }
+    return replace(grasp, first, last);
+  };
+  const Replaced replaced = replace_lifted(0);
+  if (replaced != Replaced::blocked) return replaced == Replaced::yes;
+  // Where an edge cuts a corner unseen, as in shortcut_corner(): a tenth to ten times what the check may miss.
+  return replace_lifted(kHidden * metric.unit() * std::pow(10, 2 * rng.uniform() - 1) / whole) == Replaced::yes;
 }
 
-bool PathShortcutting::replace(int grasp, std::size_t first, std::size_t last) {
+PathShortcutting::Replaced PathShortcutting::replace(int grasp, std::size_t first, std::size_t last) {
   double gain = 0;
   for (std::size_t i = first; i < last; ++i) gain += trees_.vertex_distance(vertices_[i], vertices_[i + 1]);
   made_.insert(made_.begin(), trees_.vertex(vertices_[first]).configuration);
   made_.push_back(trees_.vertex(vertices_[last]).configuration);
   for (std::size_t i = 0; i + 1 < made_.size(); ++i) gain -= trees_.distance(made_[i], made_[i + 1]);
-  if (gain < kLeastImprovement * connections_.best(grasp).cost) return false;
+  if (gain < kLeastImprovement * connections_.best(grasp).cost) return Replaced::not_shorter;
   for (std::size_t i = 1; i + 1 < made_.size(); ++i)
-    if (!checks_.configuration_is_free(grasp, made_[i])) return false;
+    if (!checks_.configuration_is_free(grasp, made_[i])) return Replaced::blocked;
   // The edge in the middle first: those of a cut corner beside it are parts of free edges.
   const std::size_t edges = made_.size() - 1;
   for (std::size_t k = 0; k < edges; ++k) {
     const std::size_t i = (k + edges / 2) % edges;
-    if (!checks_.edge_is_verified(grasp, made_[i], made_[i + 1])) return false;
+    if (!checks_.edge_is_verified(grasp, made_[i], made_[i + 1])) return Replaced::blocked;
   }
   // Vertices are made from the end that is nearer to the root of its tree.
   const bool from_start = first < crossing_;
@@ -137,7 +150,7 @@ bool PathShortcutting::replace(int grasp, std::size_t first, std::size_t last) {
   } else {
     trees_.reparent(end, at, trees_.vertex_distance(at, end));
   }
-  return true;
+  return Replaced::yes;
 }
 
 // All orders of magnitude occur: how far from a corner the obstacle is does not matter, and the last thousandth is
@@ -146,13 +159,6 @@ double PathShortcutting::draw_share(Rng& rng) {
   const double kind = 3 * rng.uniform();
   if (kind < 1) return 1;
   return kind < 2 ? rng.uniform() : std::pow(kLeastShare, rng.uniform());
-}
-
-// Between two steps of its check an edge may cut a corner of an obstacle, and nothing near it passes the check again:
-// no part of it, and no edge with the same ends in some joints. Points on the side away from the obstacle do, and cost
-// next to nothing.
-double PathShortcutting::draw_lift(Rng& rng) {
-  return rng.uniform() < kLiftProbability ? std::pow(kLeastShare, rng.uniform()) : 0;
 }
 
 void PathShortcutting::lift_out(std::size_t corner, double length) {

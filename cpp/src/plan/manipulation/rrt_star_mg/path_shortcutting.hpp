@@ -39,12 +39,11 @@ class MMGRASP_EXPORT PathShortcutting {
   /// Moves the vertices between two others towards the straight line between those, in a random choice of joints alone
   /// (as partial shortcuts, Geraerts and Overmars 2007).
   bool shortcut_some_joints(Rng& rng, int grasp);
+  enum class Replaced { yes, blocked, not_shorter };
   /// Puts the configurations `made_` between two vertices in place of those there, when that is free and shorter.
-  bool replace(int grasp, std::size_t first, std::size_t last);
+  Replaced replace(int grasp, std::size_t first, std::size_t last);
   /// How far a shortcut goes, in (0, 1].
   static double draw_share(Rng& rng);
-  /// How far what a shortcut makes is lifted out of the corners, as a share of the path it replaces; often 0.
-  static double draw_lift(Rng& rng);
   /// Moves q_, which was made of a corner, out of it by `length` along its bisector.
   void lift_out(std::size_t corner, double length);
   /// A new configuration on the edge from a corner to a neighbour, `share` of its length away from the corner, moved

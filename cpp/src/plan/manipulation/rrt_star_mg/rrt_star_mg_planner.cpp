@@ -160,7 +160,14 @@ class RrtStarMg {
       prune_and_reassign(incumbent_, trees_, informed_, sampler_);
     }
     if (grasp >= informed_.grasps()) return;  // The path is a straight line, or cannot become the best one.
-    std::vector<Eigen::VectorXd> path = first.path.waypoints;
+    add_path(grasp, first.path.waypoints);
+    update_incumbent(grasp);
+    shortcutting_.skip_vertices(grasp);
+    update_incumbent(grasp);
+  }
+
+  /// Puts a path into the trees of its grasp. TreeConnections::update() must follow.
+  void add_path(int grasp, std::vector<Eigen::VectorXd> path) {
     ends_.metric().split_long_edges(path);
     int at = trees_.nearest_in_tree(GraspTrees::tree(grasp, GraspEnds::kStart), path.front().data());
     for (std::size_t i = 1; i + 1 < path.size(); ++i)
@@ -168,9 +175,16 @@ class RrtStarMg {
                       ends_.metric().norm(path[i] - path[i - 1]));
     if (connections_.best(grasp).connection < 0) connections_.list_grasp(grasp);
     connections_.add(at, trees_.nearest_in_tree(GraspTrees::tree(grasp, GraspEnds::kGoal), path.back().data()));
-    update_incumbent(grasp);
-    shortcutting_.skip_vertices(grasp);
-    update_incumbent(grasp);
+  }
+
+  /// Rewiring along an edge that the final check refuses breaks the path that passed it, and repair may find none that
+  /// is as good: that path is put back, for shortcuts need one, and only its neighbourhood is sampled.
+  void restore_incumbent() {
+    const int grasp = incumbent_.grasp;
+    if (grasp >= informed_.grasps()) return;  // A straight line: nothing is shorter.
+    if (connections_.best(grasp).cost <= incumbent_.cost * (1 + kLeastImprovement)) return;
+    add_path(grasp, result_.path->waypoints);
+    connections_.update(grasp);
   }
 
   /// Lines 7-10 after the connections or costs of a grasp's trees changed: while its cheapest path beats the incumbent,
@@ -178,13 +192,14 @@ class RrtStarMg {
   void update_incumbent(int grasp) {
     for (;;) {
       const TreeConnections::BestPath path = connections_.update(grasp);
-      if (!(path.cost < incumbent_.cost_to_beat())) return;
+      if (!(path.cost < incumbent_.cost_to_beat())) break;
       if (!accept(grasp, path.connection)) continue;
       incumbent_.grasp = grasp;
       prune_and_reassign(incumbent_, trees_, informed_, sampler_);
       if (incumbent_.cost <= options_.goal_cost) return;
       shortcutting_.skip_vertices(grasp);
     }
+    if (grasp == incumbent_.grasp) restore_incumbent();
   }
 
   /// The final check of a path, which becomes the incumbent when it passes. Otherwise the search stepped over a thin

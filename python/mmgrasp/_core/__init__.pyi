@@ -5349,6 +5349,11 @@ class GraspSynthesis:
         Most probable first; T_object_hand is the pose in the world.
         """
     @property
+    def median_too_wide(self) -> float:
+        """
+        Of opposite walls that are farther apart than that, half are this or farther [m]; 0: none.
+        """
+    @property
     def object_centre(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         Middle of the box fitted to the map's points [m].
@@ -5357,6 +5362,11 @@ class GraspSynthesis:
     def object_longest(self) -> float:
         """
         Its longest side [m].
+        """
+    @property
+    def opens(self) -> float:
+        """
+        Largest opening of the hand [m].
         """
     @property
     def outcome(self) -> Outcome:

@@ -23,15 +23,16 @@ double distance_to_box(const Vector3d& p, const Vector3d& half) {
 
 TEST(HandClearance, EqualsBruteForce) {
   Rng rng(3);
-  std::vector<Vector3d> points;
+  std::vector<Vector3d> points, normals;
   std::vector<double> sigma;
   for (int i = 0; i < 400; ++i) {
     points.emplace_back(rng.uniform(-0.1, 0.1), rng.uniform(-0.1, 0.1), rng.uniform(0, 0.08));
-    sigma.push_back(rng.uniform(0, 0.003));
+    sigma.push_back(rng.uniform(0, 0.005));
+    normals.push_back(i % 8 == 0 ? Vector3d::Zero() : Vector3d(rng.rotation() * Vector3d::UnitZ()));
   }
   const double table = -0.01, margin = 0.002, sigmas = 2;
-  const detail::HandClearance clearance(points, sigma, sigmas, margin, table);
-  int seen[3] = {0, 0, 0}, pierced = 0;
+  const detail::HandClearance clearance(points, normals, sigma, sigmas, margin, table);
+  int seen[3] = {0, 0, 0}, pierced = 0, aside = 0;
   for (int trial = 0; trial < 3000; ++trial) {
     LinkShape box;
     box.shape.emplace<Box>().size =
@@ -47,12 +48,22 @@ TEST(HandClearance, EqualsBruteForce) {
       const Vector3d corner((k & 1 ? 1 : -1) * half.x(), (k & 2 ? 1 : -1) * half.y(), (k & 4 ? 1 : -1) * half.z());
       lowest = std::min(lowest, (T_box * corner).z());
     }
-    bool touched = false, deep = false;
+    bool touched = false, deep = false, in_sphere = false, close = false;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const double distance = distance_to_box(T_box.inverse() * points[i], half);
-      touched = touched || distance < margin + sigmas * sigma[i];
+      const double distance = distance_to_box(T_box.inverse() * points[i], half), farther = sigmas * sigma[i];
+      double nearest = distance;
+      for (int step = 1; step <= 200; ++step) {  // along the way that the surface may lie farther out
+        const Vector3d there = points[i] + farther * step / 200.0 * normals[i];
+        nearest = std::min(nearest, distance_to_box(T_box.inverse() * there, half));
+      }
+      const double left = nearest - margin - (normals[i].isZero(0) ? farther : 0);
+      touched = touched || left < 0;
+      close = close || std::abs(left) < 3e-5;  // what steps of 50 micrometres may be off
+      in_sphere = in_sphere || distance < margin + farther;
       deep = deep || distance < -0.0015;
     }
+    if (close && lowest >= table + margin) continue;
+    aside += in_sphere && !touched;
     const detail::HandContact expected = lowest < table + margin ? detail::HandContact::table
                                          : touched               ? detail::HandContact::map
                                                                  : detail::HandContact::none;
@@ -63,6 +74,7 @@ TEST(HandClearance, EqualsBruteForce) {
   }
   for (const int count : seen) EXPECT_GT(count, 100);
   EXPECT_GT(pierced, 50);
+  EXPECT_GT(aside, 100);  // beside the way, and as near as its length
 }
 
 TEST(MapSurface, BoxOfLeastAreaStandsOnTheTable) {

@@ -79,6 +79,9 @@ struct MMGRASP_EXPORT GraspSynthesis {
   SynthesisCounts counts;
   Rejections arm;       ///< Why the arm did not reach grasps.
   ObjectExtent object;  ///< Middle and longest side of the box fitted to the map's points.
+  double opens = 0;     ///< Largest opening of the hand [m].
+  double median_too_wide =
+      0;  ///< Of opposite walls that are farther apart than that, half are this or farther [m]; 0: none.
   /// One sentence: how many grasps there are or what most of those tried failed on.
   std::string summary() const;
 };

@@ -110,6 +110,7 @@ MapSurface::MapSurface(const ProbabilisticSdf& map, const SynthesisOptions& opti
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!body[i]) continue;
     scene.push_back(points[i]);
+    scene_normal.push_back(normals[i]);
     scene_sigma.push_back(found.sigma[i]);
     if ((options.object && !options.object->contains(points[i])) || normals[i].isZero(0)) continue;
     object.push_back(points[i]);

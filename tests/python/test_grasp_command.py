@@ -64,6 +64,12 @@ def test_the_table_one_object_and_the_file(scanned: Path, tmp_path: Path, capsys
     assert main(["grasp", str(scanned), "--gripper", GRIPPER, "--object", "object_1", "-o", str(out)]) == 0
     printed = capsys.readouterr().out
     assert "object_1" in printed and "object_2" not in printed and "prob." in printed
+    counts = json.loads(out.read_text())["objects"][0]["counts"]
+    assert f"of {counts['drawn']} surface points drawn, {counts['evaluated']} grasps evaluated" in " ".join(
+        printed.split()
+    )
+    for cause in ("no_opposite", "collision", "near_better"):
+        assert counts[cause] > 0 and f"{cause.replace('_', ' ')} {counts[cause]}" in " ".join(printed.split())
     assert [row["name"] for row in json.loads(out.read_text())["objects"]] == ["object_1"]
     # The same seed gives the same grasps.
     again = grasps(scanned, capsys, "--object", "object_1")

@@ -7827,7 +7827,7 @@ def synthesize_grasps(map: ProbabilisticSdf, hand: Hand, *, table: float | None 
         refined: int = 8  # grasps around which the second search goes on
         shift: float = 0.012  # farthest that the second search shifts a grasp [m]
         max_tilt: float = 1.05  # of the approach against straight down [rad]
-        table_tolerance: float = 0.004  # what the map has up to this above the table is the table [m]
+        table_tolerance: float = 0.004  # what the map has up to this, or to `sigmas` of its own, above the table is the table [m]
         sigmas: float = 2.0  # standard deviations of the surface kept free around the hand
         margin: float = 0.002  # kept free beside them, and above the table [m]
         approach_distance: float = 0.05  # straight way in that must be free [m]

@@ -27,6 +27,7 @@ from .exit_codes import DONE, NOT_FOUND
 FORMAT, VERSION = "mmgrasp-grasps", 1
 _LEVEL = 0.17  # the table may be that far from level [rad]
 _ROOM = 0.01  # around an object's points, within which its surface is taken from the map [m]
+_TRIED = {"drawn": "surface points drawn", "evaluated": "grasps evaluated"}
 _SHARES = ("angle", "placement", "centring", "certainty")
 
 
@@ -183,6 +184,16 @@ def _grasps_of(
     return {"name": thing["name"], "summary": found.summary(), "counts": dict(found.counts), "grasps": grasps}
 
 
+def _lost(row: dict[str, Any]) -> str:
+    """What became of all that were tried beside the grasps that were found; the summary says it where there are none."""
+    causes = [(name.replace("_", " "), n) for name, n in row["counts"].items() if n and name not in _TRIED]
+    if not row["grasps"] or not causes:
+        return ""
+    causes.sort(key=lambda cause: -cause[1])
+    tried = ", ".join(f"{row['counts'][name]} {what}" for name, what in _TRIED.items())
+    return f"; of {tried} the others fell at: " + ", ".join(f"{name} {n}" for name, n in causes)
+
+
 def _print(rows: list[dict[str, Any]], written: dict[str, Path | None], console: Console) -> None:
     table = Table(title="the best grasp of each object; its probability weighs the criteria")
     for column in ("object", "grasps", "prob.", "angle", "place", "centre", "sure", "mm"):
@@ -197,7 +208,7 @@ def _print(rows: list[dict[str, Any]], written: dict[str, Path | None], console:
         table.add_row(name, count, f"{best['probability']:.2f}", *shares, f"{1e3 * best['opening']:.0f}")
     console.print(table)
     for row in rows:
-        console.print(printable(f"{row['name']}: {row['summary']}"), markup=False, soft_wrap=True)
+        console.print(printable(f"{row['name']}: {row['summary']}{_lost(row)}"), markup=False, soft_wrap=True)
     for what, path in written.items():
         if path is not None:
             console.print(f"{what}: {printable(str(path))}", markup=False, soft_wrap=True)

@@ -205,7 +205,7 @@ void bind_result(py::module_& m) {
           "object_longest", [](const G& g) { return g.object.longest; }, "Its longest side [m].")
       .def_readonly("opens", &G::opens, "Largest opening of the hand [m].")
       .def_readonly("median_too_wide", &G::median_too_wide,
-                    "Of opposite walls that are farther apart than that, half are this or farther [m]; 0: none.")
+                    "Median distance of opposite walls that are farther apart than that [m]; 0: none.")
       .def("summary", &G::summary, "One sentence: how many grasps, or what most of those tried failed on.")
       .def("__repr__", [](const G& g) { return "GraspSynthesis(" + g.summary() + ")"; });
 }

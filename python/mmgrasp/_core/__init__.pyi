@@ -5351,7 +5351,7 @@ class GraspSynthesis:
     @property
     def median_too_wide(self) -> float:
         """
-        Of opposite walls that are farther apart than that, half are this or farther [m]; 0: none.
+        Median distance of opposite walls that are farther apart than that [m]; 0: none.
         """
     @property
     def object_centre(self) -> numpy.typing.NDArray[numpy.float64]:

@@ -78,11 +78,10 @@ struct MMGRASP_EXPORT GraspSynthesis {
   std::vector<Grasp> grasps;             ///< Most probable first; T_object_hand is the pose in the world.
   std::vector<GraspRating> ratings;      ///< One for each grasp, in the same order.
   SynthesisCounts counts;
-  Rejections arm;       ///< Why the arm did not reach grasps.
-  ObjectExtent object;  ///< Middle and longest side of the box fitted to the map's points.
-  double opens = 0;     ///< Largest opening of the hand [m].
-  double median_too_wide =
-      0;  ///< Of opposite walls that are farther apart than that, half are this or farther [m]; 0: none.
+  Rejections arm;              ///< Why the arm did not reach grasps.
+  ObjectExtent object;         ///< Middle and longest side of the box fitted to the map's points.
+  double opens = 0;            ///< Largest opening of the hand [m].
+  double median_too_wide = 0;  ///< Median distance of opposite walls that are farther apart than that [m]; 0: none.
   /// One sentence: how many grasps there are or what most of those tried failed on.
   std::string summary() const;
 };

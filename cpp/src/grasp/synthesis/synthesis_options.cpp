@@ -88,7 +88,7 @@ std::string GraspSynthesis::summary() const {
     wide = "; half of the opposite walls are " + millimetres(median_too_wide) + " or more apart, and the hand opens " +
            millimetres(opens);
   }
-  // Of all causes the only one that another place of the base changes.
+  // Another place of the base changes this cause alone.
   const std::string beyond =
       counts.arm > 0 ? "; the arm does not get to the " + number(counts.arm) + " that hold: " + arm.summary() : "";
   return "no grasp of " + number(counts.drawn) + " surface points drawn and " + number(counts.evaluated) +

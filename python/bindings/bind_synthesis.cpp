@@ -47,7 +47,8 @@ const std::vector<OptionField<SynthesisCall>>& synthesis_fields() {
       search("refined", &O::refined, "grasps around which the second search goes on"),
       search("shift", &O::shift, "farthest that the second search shifts a grasp [m]"),
       search("max_tilt", &O::max_tilt, "of the approach against straight down [rad]"),
-      search("table_tolerance", &O::table_tolerance, "what the map has up to this above the table is the table [m]"),
+      search("table_tolerance", &O::table_tolerance,
+             "what the map has up to this, or to `sigmas` of its own, above the table is the table [m]"),
       search("sigmas", &O::sigmas, "standard deviations of the surface kept free around the hand"),
       search("margin", &O::margin, "kept free beside them, and above the table [m]"),
       search("approach_distance", &O::approach_distance, "straight way in that must be free [m]"),
@@ -202,6 +203,9 @@ void bind_result(py::module_& m) {
           "Middle of the box fitted to the map's points [m].")
       .def_property_readonly(
           "object_longest", [](const G& g) { return g.object.longest; }, "Its longest side [m].")
+      .def_readonly("opens", &G::opens, "Largest opening of the hand [m].")
+      .def_readonly("median_too_wide", &G::median_too_wide,
+                    "Median distance of opposite walls that are farther apart than that [m]; 0: none.")
       .def("summary", &G::summary, "One sentence: how many grasps, or what most of those tried failed on.")
       .def("__repr__", [](const G& g) { return "GraspSynthesis(" + g.summary() + ")"; });
 }

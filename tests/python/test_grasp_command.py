@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -10,8 +11,10 @@ import numpy as np
 import pytest
 
 import mmgrasp as mg
+from conftest import ASSETS
 from frame_folders import run, write_frames, write_sensors
 from mmgrasp.cli import main
+from mmgrasp.scenario import read_arm_of
 
 GRIPPER = "asset:scenarios/storeroom.yaml"
 SIDES = {"large": (np.array([0.10, 0.02]), 0.4, (0.12, 0.08)), "small": (np.array([-0.12, -0.05]), 0.0, (0.06, 0.06))}
@@ -61,6 +64,12 @@ def test_the_table_one_object_and_the_file(scanned: Path, tmp_path: Path, capsys
     assert main(["grasp", str(scanned), "--gripper", GRIPPER, "--object", "object_1", "-o", str(out)]) == 0
     printed = capsys.readouterr().out
     assert "object_1" in printed and "object_2" not in printed and "prob." in printed
+    counts = json.loads(out.read_text())["objects"][0]["counts"]
+    assert f"of {counts['drawn']} surface points drawn, {counts['evaluated']} grasps evaluated" in " ".join(
+        printed.split()
+    )
+    for cause in ("no_opposite", "collision", "near_better"):
+        assert counts[cause] > 0 and f"{cause.replace('_', ' ')} {counts[cause]}" in " ".join(printed.split())
     assert [row["name"] for row in json.loads(out.read_text())["objects"]] == ["object_1"]
     # The same seed gives the same grasps.
     again = grasps(scanned, capsys, "--object", "object_1")
@@ -88,6 +97,68 @@ def test_patches_lie_on_the_faces_and_are_drawn(
                 assert 0 < patch["sigma"] < 0.005
     assert main(["grasp", str(scanned), "--gripper", GRIPPER, "--png", str(tmp_path)]) == 2
     assert str(tmp_path) in capsys.readouterr().err.replace("\n", "")
+
+
+def test_the_arm_gets_to_every_grasp(scanned: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """By the robot's own kinematics at its place, and free of the true table and of the other box, which the command has never seen."""
+    standing = [-0.8, 0.0, -0.7, 0.1]
+    capsys.readouterr()
+    base = "--base=" + ",".join(map(str, standing))
+    assert main(["grasp", str(scanned), "--robot", GRIPPER, base, "--grasps", "6", "--json"]) == 0
+    content = json.loads(capsys.readouterr().out)
+    assert content["robot"] == GRIPPER and content["base"] == standing
+    setup = read_arm_of(GRIPPER)
+    arm = setup.arm.at(mg.pose(standing[:3], rpy=[0, 0, standing[3]]))
+    for row in content["objects"]:
+        assert row["grasps"]
+        middle = np.mean([grasp["T_world_hand"]["xyz"] for grasp in row["grasps"]], axis=0)
+        world = mg.World()
+        world.add_box("table", [0.9, 0.9, 0.02], mg.pose([0, 0, -0.0105]))
+        for name, (place, yaw, sides) in SIDES.items():
+            height = {"large": 0.06, "small": 0.10}[name]
+            if np.linalg.norm(place - middle[:2]) > 0.05:
+                world.add_box(name, [*sides, height], mg.pose([*place, height / 2], rpy=[0, 0, yaw]))
+        assert len(world.objects) == 2
+        checker = mg.CollisionChecker(setup.robot, world, group=arm)
+        for grasp in row["grasps"]:
+            q = np.array([grasp["q"][name] for name in arm.names])
+            T = mg.pose(grasp["T_world_hand"]["xyz"], quat_xyzw=grasp["T_world_hand"]["quat_xyzw"])
+            assert np.allclose(arm.fk(q), T, atol=2e-4)
+            assert checker.is_free(q)
+
+
+def test_a_gripper_too_narrow_for_everything_is_said(
+    scanned: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    narrow = tmp_path / "narrow.yaml"
+    scenario = (ASSETS / "scenarios" / "storeroom.yaml").read_text()
+    narrow.write_text(scenario.replace("max_opening: 0.10", "max_opening: 0.02").replace("open: 0.05", "open: 0.01"))
+    assert main(["grasp", str(scanned), "--gripper", str(narrow)]) == 4
+    printed = " ".join(capsys.readouterr().out.split())
+    for name, (_, _, sides) in zip(("object_1", "object_2"), (SIDES["large"], SIDES["small"]), strict=True):
+        said = re.search(rf"{name}: .*?opposite walls are (\d+) mm or more apart, and the hand opens 20 mm", printed)
+        assert said and min(sides) - 0.004 < int(said[1]) / 1000 < max(sides) + 0.004, printed
+
+
+def test_out_of_the_arms_reach_is_said(scanned: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["grasp", str(scanned), "--robot", GRIPPER, "--base=-6,0,-0.7,0"]) == 4
+    printed = " ".join(capsys.readouterr().out.split())
+    assert printed.count("that hold: unreachable") == 2
+
+    other = tmp_path / "other.yaml"
+    scenario = (ASSETS / "scenarios" / "storeroom.yaml").read_text()
+    other.write_text(scenario.replace("tool_link: gripper_tcp", "tool_link: gripper_link"))
+    for arguments, words in (
+        ([], "--gripper: must be given"),
+        (["--gripper", GRIPPER, "--base", "0,0,0,0"], "--base: goes with --robot"),
+        (["--gripper", str(other), "--robot", GRIPPER], "gripper_link is not the tip of --robot's arm, gripper_tcp"),
+    ):
+        assert main(["grasp", str(scanned), *arguments]) == 2
+        assert words in " ".join(capsys.readouterr().err.split())
+    for base in ("1,2,3", "1,2,3,nan", "1,2,3,x", "1,2,3,1e9"):
+        with pytest.raises(SystemExit):
+            main(["grasp", str(scanned), "--robot", GRIPPER, "--base", base])
+        assert "must be X,Y,Z,HEADING" in capsys.readouterr().err
 
 
 def test_bad_input_is_refused_by_name(scanned: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

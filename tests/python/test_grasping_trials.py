@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 import mmgrasp as mg
-from mmgrasp.reproduce.grasping_trials import area_under_curve, wilson
+from mmgrasp.reproduce import Context
+from mmgrasp.reproduce.grasping_trials import HAF, area_under_curve, run_baseline, wilson
 
 pytest.importorskip("mujoco")
 
@@ -104,3 +105,28 @@ def test_area_under_the_curve_counts_pairs() -> None:
     pairs = [(a > b) + 0.5 * (a == b) for a, b in itertools.product(scores[good], scores[~good])]
     assert area_under_curve(scores, good) == pytest.approx(np.mean(pairs))
     assert np.isnan(area_under_curve(scores, np.ones(60, dtype=bool)))
+
+
+def test_table_4_2_counts_the_failures_of_both() -> None:
+    """Outcomes made up here, so that the counts are known: ours fails once, the one frame from above at every second stapler."""
+
+    def outcome(name: str, number: int, seed: int, rough: bool) -> dict[str, Any]:
+        ours = not (name == "joystick" and number == 0 and not rough)
+        above = not (name == "stapler" and number % 2)
+        return {"object": name, "ways": {"ours": {"success": ours}, "from above": {"success": above}}}
+
+    def sweep(function: Any, items: list[dict[str, Any]], *, progress: Any, stage: str) -> list[Any]:
+        assert function is unknown_objects.attempt
+        return [outcome(**item) for item in items]
+
+    result = run_baseline(Context(run_sweep=sweep))
+    rows = {(key["physics"], key["object"]): values for key, values in result.rows}
+    every = rows["as modelled", "all"]
+    assert every["ours, failures"] == (13, 1) and every["one frame from above, failures"] == (35, 10)
+    assert every["ours"] == (147 / 160, 199 / 200) and every["attempts"] == (160, 200)
+    assert rows["as modelled", "stapler"]["one frame from above"] == (12 / 20, 0.5)
+    assert rows["rough", "all"]["ours, failures"] == (None, 0)
+    assert rows["as modelled", "bunny"]["ours"] == (19 / 20, None)
+    # What P3 prints object by object adds up to what it prints for all.
+    assert [sum(20 - count[k] for count in HAF.values()) for k in (0, 1)] == [13, 35]
+    assert [c.answer for c in result.checks] == ["confirmed", "confirmed"]

@@ -5349,6 +5349,11 @@ class GraspSynthesis:
         Most probable first; T_object_hand is the pose in the world.
         """
     @property
+    def median_too_wide(self) -> float:
+        """
+        Median distance of opposite walls that are farther apart than that [m]; 0: none.
+        """
+    @property
     def object_centre(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         Middle of the box fitted to the map's points [m].
@@ -5357,6 +5362,11 @@ class GraspSynthesis:
     def object_longest(self) -> float:
         """
         Its longest side [m].
+        """
+    @property
+    def opens(self) -> float:
+        """
+        Largest opening of the hand [m].
         """
     @property
     def outcome(self) -> Outcome:
@@ -7819,7 +7829,7 @@ def synthesize_grasps(map: ProbabilisticSdf, hand: Hand, *, table: float | None 
         refined: int = 8  # grasps around which the second search goes on
         shift: float = 0.012  # farthest that the second search shifts a grasp [m]
         max_tilt: float = 1.05  # of the approach against straight down [rad]
-        table_tolerance: float = 0.004  # what the map has up to this above the table is the table [m]
+        table_tolerance: float = 0.004  # what the map has up to this, or to `sigmas` of its own, above the table is the table [m]
         sigmas: float = 2.0  # standard deviations of the surface kept free around the hand
         margin: float = 0.002  # kept free beside them, and above the table [m]
         approach_distance: float = 0.05  # straight way in that must be free [m]

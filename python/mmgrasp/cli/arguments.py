@@ -203,9 +203,20 @@ def _add_grasp(commands: Commands) -> None:
     parser.add_argument(
         "--gripper",
         type=_source,
-        required=True,
         metavar="NAME",
         help="whose gripper: a shipped profile (tiago, ...), or the file of a robot profile or scenario",
+    )
+    parser.add_argument(
+        "--robot",
+        type=_source,
+        metavar="NAME",
+        help="only grasps that this robot's arm reaches without collisions, with its own gripper; named like --gripper",
+    )
+    parser.add_argument(
+        "--base",
+        type=_base,
+        metavar="X,Y,Z,HEADING",
+        help="where the root of --robot stands in the map's world [m, m, m, rad] (default 0,0,0,0)",
     )
     parser.add_argument("--object", type=_name, metavar="NAME", help="only this object of objects.json")
     parser.add_argument("-o", "--out", type=_path, metavar="FILE", help="also write all grasps as JSON")
@@ -420,6 +431,13 @@ def _direction(text: str) -> list[float]:
     values = [_number(part) for part in text.split(",")]
     if len(values) != 3 or not all(abs(x) <= 1e6 for x in values) or not any(abs(x) > 1e-6 for x in values):
         raise argparse.ArgumentTypeError(f"{text!r}: must be a direction X,Y,Z other than 0,0,0")
+    return values
+
+
+def _base(text: str) -> list[float]:
+    values = [_number(part) for part in text.split(",")]
+    if len(values) != 4 or not all(abs(x) <= 1e6 for x in values):
+        raise argparse.ArgumentTypeError(f"{text!r}: must be X,Y,Z,HEADING, four numbers of at most 1e+06")
     return values
 
 

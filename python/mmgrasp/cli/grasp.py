@@ -19,13 +19,15 @@ from ..documents.reading import Node, read_json
 from ..scan.objects import FORMAT as OBJECTS_FORMAT
 from ..scan.objects import VERSION as OBJECTS_VERSION
 from ..scan.objects import pose_to_dict
-from ..scenario import read_gripper
+from ..scan.surroundings import Surroundings
+from ..scenario import read_arm_of, read_gripper
 from .console import Reporter
 from .exit_codes import DONE, NOT_FOUND
 
 FORMAT, VERSION = "mmgrasp-grasps", 1
 _LEVEL = 0.17  # the table may be that far from level [rad]
 _ROOM = 0.01  # around an object's points, within which its surface is taken from the map [m]
+_TRIED = {"drawn": "surface points drawn", "evaluated": "grasps evaluated"}
 _SHARES = ("angle", "placement", "centring", "certainty")
 
 
@@ -37,17 +39,20 @@ def run_grasp(arguments: argparse.Namespace, console: Console) -> int:
         check_file(arguments.png, PNG)
         if arguments.out is not None and os.path.realpath(arguments.out) == os.path.realpath(arguments.png):
             raise InvalidInput(f"--png {printable(str(arguments.png))}: is the file of -o, too: give another name")
-    hand = read_gripper(arguments.gripper)
+    hand, arm = _read_hand(arguments)
     objects, plane = _read_objects(arguments.map)
     chosen = _chosen(objects, arguments.object, arguments.map)
     sdf = _core.ProbabilisticSdf.load(str(arguments.map / "map.sdf"))
+    around = None if arm is None else Surroundings(sdf)
     rows = []
     with Reporter(console) as report:
         for k, thing in enumerate(chosen):
             report("grasps", k / len(chosen))
-            rows.append(_grasps_of(thing, plane, sdf, hand, arguments))
+            rows.append(_grasps_of(thing, plane, sdf, hand, arm, around, arguments))
         report("grasps", 1.0)
-    content = {"format": FORMAT, "version": VERSION, "gripper": arguments.gripper, "objects": rows}
+    content = {"format": FORMAT, "version": VERSION, "gripper": arguments.gripper or arguments.robot, "objects": rows}
+    if arm is not None:
+        content |= {"robot": arguments.robot, "base": arguments.base or [0.0] * 4}
     if arguments.out is not None:
         write_result(arguments.out, _text(content))
     if arguments.png is not None:
@@ -61,6 +66,24 @@ def run_grasp(arguments: argparse.Namespace, console: Console) -> int:
     else:
         _print(rows, {"grasps": arguments.out, "picture": arguments.png}, console)
     return DONE if any(row["grasps"] for row in rows) else NOT_FOUND
+
+
+def _read_hand(arguments: argparse.Namespace) -> tuple[_core.Hand, _core.JointGroup | None]:
+    """The gripper and, with --robot, the arm that carries it, where its robot stands."""
+    if arguments.robot is None:
+        if arguments.gripper is None:
+            raise InvalidInput("--gripper: must be given, or --robot with a gripper of its own")
+        if arguments.base is not None:
+            raise InvalidInput("--base: goes with --robot")
+        return read_gripper(arguments.gripper), None
+    setup = read_arm_of(arguments.robot)
+    hand = setup.gripper if arguments.gripper is None else read_gripper(arguments.gripper)
+    if hand.tool_link != setup.arm.tip:
+        raise InvalidInput(
+            f"--gripper {arguments.gripper}: its tool link {hand.tool_link} is not the tip of --robot's arm, {setup.arm.tip}"
+        )
+    x, y, z, heading = arguments.base or (0.0, 0.0, 0.0, 0.0)
+    return hand, setup.arm.at(_core.pose([x, y, z], rpy=[0, 0, heading]))
 
 
 def _text(content: dict[str, Any]) -> str:
@@ -117,22 +140,35 @@ def _grasps_of(
     plane: dict[str, Any],
     sdf: _core.ProbabilisticSdf,
     hand: _core.Hand,
+    arm: _core.JointGroup | None,
+    around: Surroundings | None,
     arguments: argparse.Namespace,
 ) -> dict[str, Any]:
     box = thing["bounds"].copy()
     middle, normal = box.mean(axis=0), np.array(plane["normal"])
     table = float((plane["offset"] - normal[:2] @ middle[:2]) / normal[2])
+    world = None if around is None else around.around(box, table)
     box += [[-_ROOM], [_ROOM]]
     found = _core.synthesize_grasps(
-        sdf, hand, table=table, object=box, samples=arguments.samples, seed=arguments.seed, max_grasps=arguments.grasps
+        sdf,
+        hand,
+        table=table,
+        object=box,
+        arm=arm,
+        world=world,
+        samples=arguments.samples,
+        seed=arguments.seed,
+        max_grasps=arguments.grasps,
     )
     if found.outcome == Outcome.stopped:
         raise KeyboardInterrupt
     grasps = []
     for grasp, rating in zip(found.grasps, found.ratings, strict=True):
         success = rating.success.to_dict()
+        reached = {} if arm is None else {"q": dict(zip(arm.names, np.asarray(rating.q).tolist(), strict=True))}
         grasps.append(
             {
+                **reached,
                 "T_world_hand": pose_to_dict(grasp.T_object_hand),
                 "opening": grasp.opening,
                 "pretouch_opening": rating.pretouch_opening,
@@ -146,6 +182,16 @@ def _grasps_of(
             }
         )
     return {"name": thing["name"], "summary": found.summary(), "counts": dict(found.counts), "grasps": grasps}
+
+
+def _lost(row: dict[str, Any]) -> str:
+    """What became of all that were tried beside the grasps that were found; the summary says it where there are none."""
+    causes = [(name.replace("_", " "), n) for name, n in row["counts"].items() if n and name not in _TRIED]
+    if not row["grasps"] or not causes:
+        return ""
+    causes.sort(key=lambda cause: -cause[1])
+    tried = ", ".join(f"{row['counts'][name]} {what}" for name, what in _TRIED.items())
+    return f"; of {tried} the others fell at: " + ", ".join(f"{name} {n}" for name, n in causes)
 
 
 def _print(rows: list[dict[str, Any]], written: dict[str, Path | None], console: Console) -> None:
@@ -162,7 +208,7 @@ def _print(rows: list[dict[str, Any]], written: dict[str, Path | None], console:
         table.add_row(name, count, f"{best['probability']:.2f}", *shares, f"{1e3 * best['opening']:.0f}")
     console.print(table)
     for row in rows:
-        console.print(printable(f"{row['name']}: {row['summary']}"), markup=False, soft_wrap=True)
+        console.print(printable(f"{row['name']}: {row['summary']}{_lost(row)}"), markup=False, soft_wrap=True)
     for what, path in written.items():
         if path is not None:
             console.print(f"{what}: {printable(str(path))}", markup=False, soft_wrap=True)

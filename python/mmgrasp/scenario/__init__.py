@@ -4,7 +4,9 @@
 (`TraySetup`) and grasps sampled.
 """
 
+from .robot_section import ArmSetup as ArmSetup
 from .robot_section import RobotSetup as RobotSetup
+from .robot_section import read_arm_of as read_arm_of
 from .robot_section import read_gripper as read_gripper
 from .scenario import Obstacle as Obstacle
 from .scenario import Scenario as Scenario

@@ -138,12 +138,22 @@ def read_gripper(source: str) -> Hand:
 
     Raises InvalidInput or IoError with one message that names file, line, key, value and rule.
     """
-    path = shipped(source) if source.startswith("asset:") else profile_path(source)
-    root = read_yaml(path).root
-    sections = choose_sections(root, None) if "trays" in root else _profile_sections(root)
+    sections = _sections_of(source)
     robot = compose(sections.robot)
     _link(robot, sections.robot["tool_link"])
     return _read_gripper(sections.gripper, robot, sections.robot["tool_link"].string())
+
+
+def read_arm_of(source: str, progress: Progress = None) -> ArmSetup:
+    """Arm and gripper of a robot profile or scenario, named and refused as in read_gripper()."""
+    sections = _sections_of(source)
+    return _arm_setup(sections.robot, sections.gripper, progress)
+
+
+def _sections_of(source: str) -> RobotSections:
+    path = shipped(source) if source.startswith("asset:") else profile_path(source)
+    root = read_yaml(path).root
+    return choose_sections(root, None) if "trays" in root else _profile_sections(root)
 
 
 def read_setup(sections: RobotSections, progress: Progress = None) -> RobotSetup:
@@ -186,6 +196,10 @@ def read_arm(root: Node, progress: Progress = None) -> ArmSetup:
     profile = _named_profile(root["robot"])
     node = root["robot"] if profile is None else profile.robot
     hand = root["gripper"] if profile is None or "gripper" in root else profile.gripper
+    return _arm_setup(node, hand, progress)
+
+
+def _arm_setup(node: Node, hand: Node, progress: Progress) -> ArmSetup:
     node.mapping("urdf group tool_link", ROBOT_KEYS)
     robot = compose(node)
     tool_link = node["tool_link"].string()

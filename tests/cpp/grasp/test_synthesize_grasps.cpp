@@ -154,6 +154,10 @@ TEST(SynthesizeGrasps, TooWideForTheHandIsToldByCause) {
   EXPECT_EQ(found.counts.evaluated, causes(found.counts));
   EXPECT_GT(found.counts.too_wide, found.counts.drawn / 3);
   EXPECT_NE(found.summary().find("no grasp"), std::string::npos);
+  EXPECT_NEAR(found.opens, 0.03, 1e-9);
+  EXPECT_GT(found.median_too_wide, kSize.x() - 0.002);  // of walls 40 and 70 mm apart
+  EXPECT_LT(found.median_too_wide, kSize.y() + 0.002);
+  EXPECT_NE(found.summary().find("or more apart, and the hand opens 30 mm"), std::string::npos) << found.summary();
 }
 
 TEST(SynthesizeGrasps, NeighboursAreKeptClearOf) {

@@ -358,8 +358,8 @@ TEST(SegmentObjects, MisuseIsRefused) {
   EXPECT_THROW(segment_depth_image(DepthImage{}), InvalidInput);
 }
 
-/// PCL writes hundreds of lines when no three points span a plane; here that is an answer. From several threads at once, too,
-/// since PCL has one level for all of them.
+/// PCL writes hundreds of lines when no three points span a plane; here that is an answer. From several threads at
+/// once, too, since PCL has one level for all of them.
 TEST(SegmentObjects, PointsOnALineWriteNothing) {
   std::vector<Vector3d> line;
   for (int k = 0; k < 60; ++k) line.emplace_back(0.005 * k, 0, 0);

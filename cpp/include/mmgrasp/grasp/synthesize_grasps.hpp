@@ -28,7 +28,8 @@ struct MMGRASP_EXPORT SynthesisOptions {
   double shift = 0.012;         ///< Farthest that the second search shifts a grasp in the plane of its pads [m]; >= 0.
   double max_tilt = 1.05;       ///< Largest angle of the approach from straight down, in [0, pi] [rad].
   std::optional<double> table;  ///< Height of the level table that the object stands on [m]; none: there is none.
-  double table_tolerance = 0.004;  ///< What the map has up to this height above the table is the table [m]; >= 0.
+  /// What the map has up to this, or to `sigmas` of its own, above the table is the table [m]; >= 0.
+  double table_tolerance = 0.004;
   std::optional<Eigen::AlignedBox3d> object;  ///< What to grasp lies in this box [m]; none: all of the map.
   double sigmas = 2;                          ///< Standard deviations of the surface kept free around the hand; >= 0.
   double margin = 0.002;                      ///< Kept free beside them, and above the table [m]; >= 0.
@@ -77,8 +78,10 @@ struct MMGRASP_EXPORT GraspSynthesis {
   std::vector<Grasp> grasps;             ///< Most probable first; T_object_hand is the pose in the world.
   std::vector<GraspRating> ratings;      ///< One for each grasp, in the same order.
   SynthesisCounts counts;
-  Rejections arm;       ///< Why the arm did not reach grasps.
-  ObjectExtent object;  ///< Middle and longest side of the box fitted to the map's points.
+  Rejections arm;              ///< Why the arm did not reach grasps.
+  ObjectExtent object;         ///< Middle and longest side of the box fitted to the map's points.
+  double opens = 0;            ///< Largest opening of the hand [m].
+  double median_too_wide = 0;  ///< Median distance of opposite walls that are farther apart than that [m]; 0: none.
   /// One sentence: how many grasps there are or what most of those tried failed on.
   std::string summary() const;
 };

@@ -41,7 +41,7 @@ GraspEvaluator::GraspEvaluator(const ProbabilisticSdf& map, const HandModel& han
       hand_(hand),
       surface_(surface),
       options_(options),
-      clearance_(surface.scene, surface.scene_sigma, options.sigmas,
+      clearance_(surface.scene, surface.scene_normal, surface.scene_sigma, options.sigmas,
                  std::max(options.margin, 0.75 * map.options().voxel), options.table) {
   for (int k = 0; k <= kOpenings; ++k)
     openings_.push_back(opening_at(std::vector<double>(hand.groups(), 1.0 * k / kOpenings)));

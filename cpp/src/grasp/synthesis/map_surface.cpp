@@ -46,15 +46,20 @@ std::vector<Vector3d> vertex_normals(const TriangleMesh& mesh) {
   return normals;
 }
 
-/// Whether each vertex lies above the floor and in a piece of at least kLeastPiece such vertices.
-std::vector<char> in_bodies(const TriangleMesh& mesh, double floor) {
+/// Whether each vertex lies above the table, by more than it may be the table's, and in a piece of at least kLeastPiece
+/// such vertices.
+std::vector<char> in_bodies(const SdfMesh& found, const SynthesisOptions& options) {
+  const TriangleMesh& mesh = *found.mesh;
   std::vector<int> parent(mesh.vertices.size()), size(mesh.vertices.size(), 0);
   std::iota(parent.begin(), parent.end(), 0);
   const auto root = [&](int i) {
     while (parent[i] != i) i = parent[i] = parent[parent[i]];
     return i;
   };
-  const auto above = [&](int i) { return mesh.vertices[i].z() >= floor; };
+  const auto above = [&](int i) {
+    if (!options.table) return true;
+    return mesh.vertices[i].z() >= *options.table + std::max(options.table_tolerance, options.sigmas * found.sigma[i]);
+  };
   for (const auto& [a, b, c] : mesh.triangles) {
     for (const auto& [from, to] : {std::pair{a, b}, {b, c}})
       if (above(from) && above(to)) parent[root(from)] = root(to);
@@ -97,19 +102,19 @@ ObjectExtent fit_extent(const std::vector<Vector3d>& points, double floor) {
 }
 
 MapSurface::MapSurface(const ProbabilisticSdf& map, const SynthesisOptions& options) {
-  const double floor = options.table ? *options.table + options.table_tolerance : -kInfinity;
   const SdfMesh found = surface_of(map, options);
   const std::vector<Vector3d>& points = found.mesh->vertices;
   const bool whole = !options.table && !options.object;
   require(map.blocks() > 0 && !(whole && points.empty()), "map", std::to_string(map.frames()) + " frames",
           "has no surface to grasp: integrate depth images of the part first");
   const std::vector<Vector3d> normals = vertex_normals(*found.mesh);
-  const std::vector<char> body = in_bodies(*found.mesh, floor);
+  const std::vector<char> body = in_bodies(found, options);
   std::vector<std::size_t> chosen;
   Eigen::AlignedBox3d bounds;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!body[i]) continue;
     scene.push_back(points[i]);
+    scene_normal.push_back(normals[i]);
     scene_sigma.push_back(found.sigma[i]);
     if ((options.object && !options.object->contains(points[i])) || normals[i].isZero(0)) continue;
     object.push_back(points[i]);

@@ -23,8 +23,9 @@ class MMGRASP_EXPORT MapSurface {
   Eigen::Vector3d mean_normal(std::size_t i) const;
 
   std::vector<Eigen::Vector3d> object, object_normal;
-  std::vector<Eigen::Vector3d> scene;  ///< The object's points among them.
-  std::vector<double> scene_sigma;     ///< [m]
+  std::vector<Eigen::Vector3d> scene,
+      scene_normal;                 ///< The object's points among them; a normal is zero where there is none.
+  std::vector<double> scene_sigma;  ///< [m]
   ObjectExtent extent;
   double diagonal = 0;  ///< Diagonal of the axis-aligned box of the object's points [m].
 

@@ -81,8 +81,17 @@ std::string GraspSynthesis::summary() const {
       {counts.arm, "the arm does not get there"}};
   const auto* most = std::max_element(std::begin(causes), std::end(causes),
                                       [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::string wide;
+  if (counts.too_wide > counts.evaluated) {
+    const auto millimetres = [](double x) { return std::to_string(static_cast<int>(std::round(1e3 * x))) + " mm"; };
+    wide = "; half of the opposite walls are " + millimetres(median_too_wide) + " or more apart, and the hand opens " +
+           millimetres(opens);
+  }
+  // Another place of the base changes this cause alone.
+  const std::string beyond =
+      counts.arm > 0 ? "; the arm does not get to the " + number(counts.arm) + " that hold: " + arm.summary() : "";
   return "no grasp of " + number(counts.drawn) + " surface points drawn and " + number(counts.evaluated) +
-         " grasps evaluated; most often (" + number(most->first) + "): " + most->second;
+         " grasps evaluated; most often (" + number(most->first) + "): " + most->second + wide + beyond;
 }
 
 void draw_success(const ProbabilisticSdf& map, const HandModel& hand, const SurfaceDrawOptions& draws,

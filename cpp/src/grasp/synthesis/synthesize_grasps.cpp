@@ -29,6 +29,7 @@ struct Sample {
   bool evaluated = false;
   bool confirmed = false;  ///< `grasp.verdict` is final.
   SynthesisCounts draws;
+  std::vector<double> too_wide;  ///< Distances of opposite walls that are farther apart than the hand opens [m].
 };
 
 /// Draws grasps over the object, evaluates them, refines the best, and checks once more what is returned.
@@ -85,7 +86,7 @@ class Search {
       const double turn = rng.uniform(-1, 1), depth = rng.uniform(-kDepths, kDepths);
       double width = 0;
       Vector3d approach;
-      if (!find_width(surface_.object[i], axis, width, sample.draws)) continue;
+      if (!find_width(surface_.object[i], axis, width, sample)) continue;
       if (!choose_approach(axis, turn, approach)) {
         ++sample.draws.tilted;
         continue;
@@ -99,7 +100,8 @@ class Search {
   }
 
   /// From a surface point through the object: a ray from beyond meets the opposite wall from its front.
-  bool find_width(const Vector3d& point, const Vector3d& axis, double& width, SynthesisCounts& counts) const {
+  bool find_width(const Vector3d& point, const Vector3d& axis, double& width, Sample& sample) const {
+    SynthesisCounts& counts = sample.draws;
     const double most = evaluator_.largest_opening(), beyond = surface_.diagonal + most;
     Eigen::Matrix3Xd origins(3, 2), directions(3, 2);
     origins << point + most * axis, point + beyond * axis;
@@ -112,6 +114,7 @@ class Search {
       width = (k == 0 ? most : beyond) - hits.distance[k];
       if (width > most) {
         ++counts.too_wide;
+        sample.too_wide.push_back(width);
         return false;
       }
       if (width >= thinnest) return true;
@@ -265,7 +268,9 @@ class Search {
 
   void count(GraspSynthesis& out) const {
     SynthesisCounts& counts = out.counts;
+    std::vector<double> too_wide;
     for (const Sample& sample : samples_) {
+      too_wide.insert(too_wide.end(), sample.too_wide.begin(), sample.too_wide.end());
       counts.drawn += sample.draws.drawn;
       counts.no_opposite += sample.draws.no_opposite;
       counts.too_wide += sample.draws.too_wide;
@@ -276,6 +281,12 @@ class Search {
       detail::add_verdict(sample.grasp.verdict, counts);
     }
     out.arm = rejections_;
+    out.opens = evaluator_.largest_opening();
+    if (!too_wide.empty()) {
+      const auto middle = too_wide.begin() + static_cast<std::ptrdiff_t>(too_wide.size() / 2);
+      std::nth_element(too_wide.begin(), middle, too_wide.end());
+      out.median_too_wide = *middle;
+    }
   }
 
   const ProbabilisticSdf& map_;

@@ -10,33 +10,16 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Unpack
+from typing import Unpack
 
 import numpy as np
-import yaml
 
-from .._core import (
-    Box,
-    CollisionChecker,
-    Cylinder,
-    InvalidInput,
-    IoError,
-    JointGroup,
-    LinkShape,
-    Robot,
-    Sphere,
-    World,
-    pose,
-)
-from .._files import read_text
+from .._core import CollisionChecker, InvalidInput, IoError, JointGroup, LinkShape, Robot, World
 from .._options import CheckerOptions
-from ..documents.reading import bad_yaml
+from ..documents.moveit_scene import SceneFile, scene_bodies
 
 MBM_SETS = ("bookshelf_small", "bookshelf_tall", "bookshelf_thin", "box", "cage", "table_pick", "table_under_pick")
 """The sets of problems that MotionBenchMaker makes for an arm."""
-
-LARGEST_SCENE = 100_000_000  # [bytes]
-_LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 
 @dataclass(frozen=True)
@@ -113,7 +96,7 @@ class MotionProblem:
 
 def read_motion_problem(scene: str | Path, request: str | Path) -> MotionProblem:
     """Reads one problem. Errors name the file and the entry."""
-    scene_file, request_file = _File(scene), _File(request)
+    scene_file, request_file = SceneFile(scene), SceneFile(request)
     goals = request_file.items("goal_constraints")
     if len(goals) != 1:
         raise InvalidInput(f"{request}: goal_constraints: has {len(goals)} entries, must have one")
@@ -122,7 +105,7 @@ def read_motion_problem(scene: str | Path, request: str | Path) -> MotionProblem
     if len(names) != len(positions):
         raise InvalidInput(f"{request}: start_state: {len(names)} names but {len(positions)} positions")
     path = Path(scene)
-    bodies = _bodies(scene_file)
+    bodies = scene_bodies(scene_file)
     return MotionProblem(
         name=f"{path.parent.name}/{path.stem}",
         group=request_file.of(request_file.root, "group_name"),
@@ -146,77 +129,7 @@ def read_motion_problems(folder: str | Path) -> Iterator[MotionProblem]:
         yield read_motion_problem(scene, scene.with_name(scene.name.replace("scene", "request")))
 
 
-class _File:
-    """A YAML file whose entries are looked up by name."""
-
-    def __init__(self, path: str | Path) -> None:
-        self.path = path
-        try:
-            self.root = yaml.load(read_text(Path(path), LARGEST_SCENE), Loader=_LOADER)
-        except yaml.YAMLError as error:
-            raise bad_yaml(path, error) from None
-        except (ValueError, KeyError, AttributeError, RecursionError) as error:  # of tags and dates
-            if isinstance(error, IoError):
-                raise
-            raise InvalidInput(f"{path}: is no valid YAML: {error}") from None
-
-    def of(self, value: Any, *keys: str) -> Any:
-        for key in keys:
-            if not isinstance(value, dict) or key not in value:
-                raise InvalidInput(f"{self.path}: {key} is missing")
-            value = value[key]
-        return value
-
-    def items(self, key: str) -> list[Any]:
-        value = self.of(self.root, key)
-        if not isinstance(value, list):
-            raise InvalidInput(f"{self.path}: {key}: must be a list")
-        return value
-
-    def number(self, value: Any) -> float:
-        try:
-            out = float(value)  # YAML 1.1 reads 1e-05 as a word
-        except (TypeError, ValueError):
-            out = np.nan
-        if not np.isfinite(out):
-            raise InvalidInput(f"{self.path}: {value!r}: must be a finite number")
-        return out
-
-    def pose(self, value: Any) -> np.ndarray:
-        xyz = [self.number(x) for x in self.of(value, "position")]
-        return pose(xyz=xyz, quat_xyzw=[self.number(x) for x in self.of(value, "orientation")])
-
-
-def _shape(file: _File, primitive: dict[str, Any]) -> Box | Cylinder | Sphere:
-    kind = file.of(primitive, "type")
-    sizes = [file.number(x) for x in file.of(primitive, "dimensions")]
-    wanted = {"box": 3, "cylinder": 2, "sphere": 1}
-    if kind not in wanted:
-        raise InvalidInput(f"{file.path}: primitive type '{kind}': must be one of {', '.join(wanted)}")
-    if len(sizes) != wanted[kind]:
-        raise InvalidInput(f"{file.path}: {kind} dimensions {sizes}: must be {wanted[kind]} numbers")
-    if kind == "box":
-        return Box(sizes)
-    return Cylinder(radius=sizes[1], length=sizes[0]) if kind == "cylinder" else Sphere(sizes[0])
-
-
-def _bodies(file: _File) -> dict[str, tuple[list[LinkShape], np.ndarray | None]]:
-    bodies: dict[str, tuple[list[LinkShape], np.ndarray | None]] = {}
-    for entry in file.of(file.root, "world", "collision_objects"):
-        name = file.of(entry, "id")
-        primitives, poses = file.of(entry, "primitives"), file.of(entry, "primitive_poses")
-        if len(primitives) != len(poses):
-            raise InvalidInput(f"{file.path}: object '{name}': {len(primitives)} primitives but {len(poses)} poses")
-        shapes = [
-            LinkShape(_shape(file, primitive), file.pose(at)) for primitive, at in zip(primitives, poses, strict=True)
-        ]
-        if name in bodies:
-            raise InvalidInput(f"{file.path}: object '{name}': is there twice")
-        bodies[name] = (shapes, file.pose(entry["pose"]) if "pose" in entry else None)
-    return bodies
-
-
-def _allowed(file: _File, objects: Collection[str]) -> frozenset[frozenset[str]]:
+def _allowed(file: SceneFile, objects: Collection[str]) -> frozenset[frozenset[str]]:
     matrix = file.of(file.root, "allowed_collision_matrix")
     names, rows = file.of(matrix, "entry_names"), file.of(matrix, "entry_values")
     defaults, values = matrix.get("default_entry_names") or [], matrix.get("default_entry_values") or []
@@ -235,7 +148,7 @@ def _allowed(file: _File, objects: Collection[str]) -> frozenset[frozenset[str]]
     return frozenset(pairs)
 
 
-def _padding(file: _File) -> dict[str, float]:
+def _padding(file: SceneFile) -> dict[str, float]:
     """The entries of link_padding, a list of {link_name, padding}; MoveIt leaves it out when there is none."""
     padding = {}
     for entry in file.root.get("link_padding") or []:

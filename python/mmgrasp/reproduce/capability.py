@@ -105,6 +105,8 @@ def _free(context: Context) -> Result:
         "more joints reach more: the arm with its lift a larger maximum than alone",
         best["arm and lift"].maximum >= best["arm"].maximum,
     )
+    if not context.quick:
+        result.near_paper("maximal index [%]", 0.1)
     result.setup = _setup(best["arm"])
     result.notes.append(
         "P3's arm and its mounting are not the shipped robot's, so the maxima differ; P3 says nothing of rolls about the"
@@ -266,6 +268,8 @@ def _shelf(context: Context) -> Result:
         "the shelf adds nothing anywhere",
         bool((maps["before the shelf"].index <= maps["free space"].index + 1e-6).all()),
     )
+    if not context.quick:
+        result.near_paper("maximal index inside [%]", 0.25)
     result.setup = _setup(maps["free space"], **{"joints": "arm and lift", "shelf [m]": str(SHELF)})
     result.notes.append("P3 prints neither the shelf's measures nor where the robot stands before it.")
     result.drawing = map_values(maps["before the shelf"], robot, JOINTS, boxes)

@@ -78,6 +78,15 @@ class Result:
     def trend(self, what: str, holds: bool, *, clock: bool = False) -> None:
         self.checks.append(Check("T", what, bool(holds), clock))
 
+    def near_paper(self, column: str, share: float) -> None:
+        """A trend for each row in which the paper prints this column: ours is within this share of it."""
+        for key, values in self.rows:
+            paper, ours = values.get(column, (None, None))
+            if paper is not None:
+                where = ", ".join(str(value) for value in key.values())
+                what = f"{where}: {column} within {100 * share:g} % of the paper's {paper:g}"
+                self.trend(what, ours is not None and abs(ours - paper) <= share * abs(paper))
+
     def statement(self, what: str, pairs: Iterable[Pair], *, clock: bool = False) -> None:
         """A statement of the paper: that one way gives more than another; left out when there is nothing to compare."""
         found = difference(pairs)

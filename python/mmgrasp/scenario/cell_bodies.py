@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from .._core import Box, Error, LinkShape, OccupancyMap, pose, read_pcd
+from ..documents.ply_points import read_ply_points
 from ..documents.reading import Node
 from .map_bodies import merged
 from .robot_section import find_file
@@ -32,11 +33,11 @@ def read_octree(node: Node) -> list[LinkShape]:
 
 
 def read_cloud(node: Node) -> list[LinkShape]:
-    """Boxes on the cells of edge `cell` [m] that hold a point of a PCD file."""
+    """Boxes on the cells of edge `cell` [m] that hold a point of a PCD file, or a vertex of a PLY file."""
     cell = node["cell"].number(least=1e-3, most=1) if "cell" in node else node.lacks("cell")
     file = find_file(node["cloud"])
     try:
-        points = read_pcd(file).points
+        points = read_ply_points(file) if file.suffix.lower() == ".ply" else read_pcd(file).points
     except Error as error:
         node["cloud"].fail(str(error))
     points = points[np.isfinite(points).all(axis=1)]

@@ -16,7 +16,7 @@ from .._core import verify as checks
 from .._files import check_folder, shipped
 from .._progress import Progress
 from ..documents.reading import RENAMED, Node, read_yaml
-from . import cell_bodies, floor_map
+from . import cell_bodies, drawn_bodies, floor_map
 from .contact_rules import ContactRules, read_contact_rules
 from .grid_size import check_grid_size
 from .robot_section import RobotSetup, choose_sections, find_file, read_setup
@@ -35,7 +35,11 @@ MOST_TRAYS = 1000
 MOST_OBSTACLES = 10_000
 LEAST_SAMPLES = 10_000  # of the database of what the arm reaches
 SHAPE_KEYS = "box cylinder sphere mesh shapes scale"
-FILE_KEYS = {"map": "height unknown", "octree": "unknown within", "cloud": "cell within"}  # obstacles read from files
+FILE_KEYS = {
+    **{"map": "height unknown", "octree": "unknown within", "cloud": "cell within"},
+    **{"floor_plan": "thickness height", "scene": "", "urdf": "packages"},
+}
+"""Obstacles that are no shape of their own: read from files, or drawn; and the keys that each has."""
 OBSTACLE_KEYS = " ".join(dict.fromkeys(["pose", *FILE_KEYS, *" ".join(FILE_KEYS.values()).split(), SHAPE_KEYS]))
 
 
@@ -264,7 +268,7 @@ def _read_obstacles(root: Node) -> list[Obstacle]:
 
 
 def _read_obstacle_shapes(node: Node) -> list[LinkShape]:
-    """The boxes of a map, an octree or a cloud, or the shapes of a body."""
+    """What a file or a drawing holds, or the shapes of a body."""
     given = [name for name in FILE_KEYS if name in node]
     if len(given) > 1:
         node[given[1]].fail(f"{with_article(given[0])} has no {given[1]} beside it: give each an obstacle of its own")
@@ -273,7 +277,14 @@ def _read_obstacle_shapes(node: Node) -> list[LinkShape]:
         if key in node and key not in own and key not in given:
             owners = " or ".join(with_article(name) for name, keys in FILE_KEYS.items() if key in keys.split())
             node[key].fail(f"only {owners} has it" if owners else f"{with_article(given[0])} has no other shape")
-    readers = {"map": floor_map.read_floor_map, "octree": cell_bodies.read_octree, "cloud": cell_bodies.read_cloud}
+    readers = {
+        **{"map": floor_map.read_floor_map, "octree": cell_bodies.read_octree, "cloud": cell_bodies.read_cloud},
+        **{
+            "floor_plan": drawn_bodies.read_floor_plan,
+            "scene": drawn_bodies.read_scene,
+            "urdf": drawn_bodies.read_urdf,
+        },
+    }
     return readers[given[0]](node) if given else read_shapes(node, find_file)
 
 

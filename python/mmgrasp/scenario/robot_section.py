@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from .. import _core
+from .._argument_errors import checked
 from .._core import (
     Box,
     Hand,
@@ -132,6 +133,7 @@ def _profile_sections(profile: Node) -> RobotSections:
     return RobotSections(profile["robot"], profile["gripper"], place_region)
 
 
+@checked
 def read_gripper(source: str) -> Hand:
     """The gripper of a robot profile (name or file) or of a scenario, `asset:...` for a shipped one.
 

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .. import _core
+from .._argument_errors import checked
 from .._core import (
     Box,
     Capsule,
@@ -118,6 +119,7 @@ class Built:
     """Link, part or scene object of each geom by its name."""
 
 
+@checked
 def build(
     robot: Robot,
     world: World,

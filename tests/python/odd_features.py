@@ -163,7 +163,9 @@ def _base(scenario: dict[str, Any], draw: Random, _: Path) -> None:
 
 
 def _frames(scenario: dict[str, Any], draw: Random, _: Path) -> None:
-    shape = draw.choice([{"sphere": 0.04}, {"box": [0.05, 0.1, 0.03]}, {"cylinder": {"radius": 0.02, "length": 0.2}}])
+    shape: dict[str, Any] = draw.choice(
+        [{"sphere": 0.04}, {"box": [0.05, 0.1, 0.03]}, {"cylinder": {"radius": 0.02, "length": 0.2}}]
+    )
     scenario["robot"]["frames"] = [
         {"name": "lamp", "parent": "base_link", "pose": {"xyz": [-0.2, 0.25, 0.5], "rpy": [0.1, 0.0, 0.3]}, **shape}
     ]

@@ -12,7 +12,8 @@ from argument_calls import CALLS, Call, callable_of, other_arguments
 from mmgrasp._argument_errors import explain
 from number_tables import QUICK
 
-WORLD = mg.World()
+WORLD: Any = mg.World()
+MG: Any = mg
 
 
 @pytest.mark.parametrize(
@@ -23,9 +24,9 @@ WORLD = mg.World()
         (lambda: WORLD.add_box("a", [1, 1, 1], size=2), "add_box: size is given twice"),
         (lambda: WORLD.add_box("a", [1, 1, 1], None, 3), "add_box: takes 3 arguments by place (name, size, pose), got 4"),
         (lambda: WORLD.add_box("a", [1, 1, 1], poses=3), "add_box: has no argument poses; did you mean pose?"),
-        (lambda: mg.Box(), "Box: size is missing: must be an array"),
-        (lambda: mg.base.Part("a", [mg.Box([1, 1, 1]), 3], mg.pose([0, 0, 0]), []), "Part: shapes[0] = Box"),
-        (lambda: mg.optim.solve_set_cover(3, [[0, 1], [2, "x"]]), "solve_set_cover: sets[1][1] = 'x': must be a whole number"),
+        (lambda: MG.Box(), "Box: size is missing: must be an array"),
+        (lambda: MG.base.Part("a", [MG.Box([1, 1, 1]), 3], MG.pose([0, 0, 0]), []), "Part: shapes[0] = Box"),
+        (lambda: MG.optim.solve_set_cover(3, [[0, 1], [2, "x"]]), "solve_set_cover: sets[1][1] = 'x': must be a whole number"),
     ],
 )  # fmt: skip
 def test_messages(call: Any, message: str) -> None:

@@ -18,7 +18,7 @@ def test_parts_name_what_is_there() -> None:
 
 
 def test_every_table_of_bad_inputs_is_in_a_part() -> None:
-    """By their names: what fuzzes, breaks or refuses."""
+    """Those are meant whose names say that they fuzz, break or refuse."""
     words = ("fuzz", "bad_", "odd_", "arguments", "mutations", "limits", "interrupt", "_doors", "refusals", "places")
     found = {str(f) for f in HERE.glob("test_*.py") if any(word in f.name for word in words)}
     assert found - {file for part in PARTS.values() for file in files(part)} == set()

@@ -73,7 +73,7 @@ WRONG: dict[str, tuple[list[Any], Any]] = {
 
 
 def functions() -> dict[str, Callable[..., Any]]:
-    found = {}
+    found: dict[str, Callable[..., Any]] = {}
     for package in PACKAGES:
         module = importlib.import_module(f"mmgrasp.{package}".rstrip("."))
         for name in module.__all__ if hasattr(module, "__all__") else [n for n in vars(module) if n[0] != "_"]:

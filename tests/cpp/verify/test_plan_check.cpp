@@ -264,18 +264,19 @@ TEST(PlanCheck, BodiesThatOverlap) {
 
 TEST(PlanCheck, BodiesThatLieFlushDoNotTouchAtAnyPose) {
   const double half = 0.006;  // as two closed fingers
-  const auto pair_at = [&](const Pose& T, const Shape& upper, double deep) {
+  const auto pair_at = [&](const Pose& T, const mmgrasp::Shape& upper, double deep) {
     return overlapping_bodies({box("lower", {0.07, 0.022, 2 * half}, T),
                                {"upper", {{upper, Pose::Identity()}}, T * at(0, 0, 2 * half - deep)}})
         .size();
   };
-  Rng rng(3);
+  mmgrasp::Rng rng(3);
   for (int i = 0; i < 500; ++i) {
     const Pose T = at(rng.uniform(-3, 3), rng.uniform(-3, 3), rng.uniform(0, 2)) *
                    Eigen::AngleAxisd(rng.uniform(-3, 3), Eigen::Vector3d(1, rng.uniform(-1, 1), 0.3).normalized());
-    const std::vector<Shape> uppers = {Box{{0.07, 0.022, 2 * half}}, Cylinder{0.01, 2 * half}, Sphere{half},
-                                       Capsule{0.5 * half, half}};
-    for (const Shape& upper : uppers) {
+    const std::vector<mmgrasp::Shape> uppers = {mmgrasp::Box{{0.07, 0.022, 2 * half}},
+                                                mmgrasp::Cylinder{0.01, 2 * half}, mmgrasp::Sphere{half},
+                                                mmgrasp::Capsule{0.5 * half, half}};
+    for (const mmgrasp::Shape& upper : uppers) {
       EXPECT_EQ(pair_at(T, upper, 0), 0u) << upper.index();
       EXPECT_EQ(pair_at(T, upper, 4e-6), 1u) << upper.index();
     }

@@ -37,7 +37,7 @@ def test_solved_plans_hold(tmp_path: Path) -> None:
 
 # With all features at once, and a small database. These were called solved and refused by their own check:
 BROKE_WITH_ALL = {
-    62: "solved",  # the closed fingers of a second hand, flush: in touch at some base poses by rounding
+    62: "solved",  # the closed fingers of a second hand, flush: they touched at some base poses by rounding
     75: "solved",  # stops sought again without a pose that had failed: intersections without it, too
 }
 

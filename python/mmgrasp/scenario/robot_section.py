@@ -24,7 +24,7 @@ from .._core import (
 from .._files import ASSETS, shipped
 from .._progress import Progress
 from ..documents.reading import RENAMED, Node, near_miss, read_yaml
-from .closed_fingers import fingers_may_meet
+from .closed_fingers import fingers_may_meet, held_links_may_meet
 from .shapes import read_shapes
 
 BASE_LIMITS = "linear_velocity angular_velocity linear_acceleration angular_acceleration workspace wheel_velocity wheel_separation"
@@ -163,7 +163,8 @@ def read_setup(sections: RobotSections, progress: Progress = None) -> RobotSetup
     closed = gripper.joint_values(0.0)
     arm = _read_group(robot, node["group"], tool_link)
     _check_joint_owners(sections, arm)
-    arm = arm.with_reference({**other, **closed})
+    robot = held_links_may_meet(robot, arm, gripper, other)
+    arm = _read_group(robot, node["group"], tool_link).with_reference({**other, **closed})
     home = _read_home(node["home"], arm)
     _fixed_to_root(arm, sections.place_region["parent"], home)
     if "finger_links" in sections.gripper:

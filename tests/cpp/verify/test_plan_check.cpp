@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "mmgrasp/core/error.hpp"
-#include "mmgrasp/core/random.hpp"
 #include "mmgrasp/geometry/mesh.hpp"
 #include "verify/spoiled_plan.hpp"
 
@@ -260,27 +259,6 @@ TEST(PlanCheck, BodiesThatOverlap) {
   const std::vector<CheckedBody> bodies = {box("a", {1, 1, 1}, at(0, 0, 0)), box("b", {1, 1, 1}, at(1, 0, 0)),
                                            box("c", {1, 1, 1}, at(0.5, 0.2, 0))};
   EXPECT_EQ(overlapping_bodies(bodies), (std::vector<std::pair<std::size_t, std::size_t>>{{0, 2}, {1, 2}}));
-}
-
-TEST(PlanCheck, BodiesThatLieFlushDoNotTouchAtAnyPose) {
-  const double half = 0.006;  // as two closed fingers
-  const auto pair_at = [&](const Pose& T, const mmgrasp::Shape& upper, double deep) {
-    return overlapping_bodies({box("lower", {0.07, 0.022, 2 * half}, T),
-                               {"upper", {{upper, Pose::Identity()}}, T * at(0, 0, 2 * half - deep)}})
-        .size();
-  };
-  mmgrasp::Rng rng(3);
-  for (int i = 0; i < 500; ++i) {
-    const Pose T = at(rng.uniform(-3, 3), rng.uniform(-3, 3), rng.uniform(0, 2)) *
-                   Eigen::AngleAxisd(rng.uniform(-3, 3), Eigen::Vector3d(1, rng.uniform(-1, 1), 0.3).normalized());
-    const std::vector<mmgrasp::Shape> uppers = {mmgrasp::Box{{0.07, 0.022, 2 * half}},
-                                                mmgrasp::Cylinder{0.01, 2 * half}, mmgrasp::Sphere{half},
-                                                mmgrasp::Capsule{0.5 * half, half}};
-    for (const mmgrasp::Shape& upper : uppers) {
-      EXPECT_EQ(pair_at(T, upper, 0), 0u) << upper.index();
-      EXPECT_EQ(pair_at(T, upper, 4e-6), 1u) << upper.index();
-    }
-  }
 }
 
 TEST(PlanCheck, ReleaseOutsideBin) {

@@ -23,18 +23,6 @@ namespace {
 
 using BvhModel = fcl::BVHModel<fcl::OBBRSSd>;
 
-/// FCL sees boxes, cylinders, capsules and balls this much smaller on each side [m]: where two lie flush (closed
-/// fingers, a device on a plate) rounding alone would decide at each pose anew whether they meet.
-constexpr double kFlush = 5e-7;
-
-double without_flush(double size) {
-  return std::max(size - 2 * kFlush, 0.5 * size);
-}
-
-Eigen::Vector3d without_flush(const Eigen::Vector3d& size) {
-  return size.unaryExpr([](double s) { return without_flush(s); });
-}
-
 template <class... Ts>
 struct Overloaded : Ts... {
   using Ts::operator()...;
@@ -109,34 +97,32 @@ Solid plane_solid(const Plane& plane, const Pose& T) {
 
 void add_solids(const LinkShape& item, std::vector<Solid>& out) {
   const Pose& T = item.T_link_shape;
-  std::visit(Overloaded{
-                 [&](const Box& s) {
-                   out.push_back(primitive(std::make_shared<fcl::Boxd>(without_flush(s.size)), T, centred(s.size)));
-                 },
-                 [&](const Sphere& s) {
-                   out.push_back(primitive(std::make_shared<fcl::Sphered>(0.5 * without_flush(2 * s.radius)), T,
-                                           centred(Eigen::Vector3d::Constant(2 * s.radius))));
-                 },
-                 [&](const Cylinder& s) {
-                   out.push_back(primitive(
-                       std::make_shared<fcl::Cylinderd>(0.5 * without_flush(2 * s.radius), without_flush(s.length)), T,
-                       centred({2 * s.radius, 2 * s.radius, s.length})));
-                 },
-                 [&](const Capsule& s) {
-                   out.push_back(primitive(std::make_shared<fcl::Capsuled>(0.5 * without_flush(2 * s.radius), s.length),
-                                           T, centred({2 * s.radius, 2 * s.radius, s.length + 2 * s.radius})));
-                 },
-                 [&](const Plane& s) { out.push_back(plane_solid(s, T)); },
-                 [&](const MeshShape& s) { out.push_back(mesh_solid(s.mesh, T)); },
-                 [&](const Voxels& s) {
-                   const Eigen::Vector3d size = Eigen::Vector3d::Constant(s.resolution);
-                   const auto box = std::make_shared<fcl::Boxd>(without_flush(size));
-                   for (const Eigen::Vector3d& centre : *s.centres) {
-                     out.push_back(primitive(box, T * Eigen::Translation3d(centre), centred(size)));
-                   }
-                 },
-             },
-             item.shape);
+  std::visit(
+      Overloaded{
+          [&](const Box& s) { out.push_back(primitive(std::make_shared<fcl::Boxd>(s.size), T, centred(s.size))); },
+          [&](const Sphere& s) {
+            out.push_back(primitive(std::make_shared<fcl::Sphered>(s.radius), T,
+                                    centred(Eigen::Vector3d::Constant(2 * s.radius))));
+          },
+          [&](const Cylinder& s) {
+            out.push_back(primitive(std::make_shared<fcl::Cylinderd>(s.radius, s.length), T,
+                                    centred({2 * s.radius, 2 * s.radius, s.length})));
+          },
+          [&](const Capsule& s) {
+            out.push_back(primitive(std::make_shared<fcl::Capsuled>(s.radius, s.length), T,
+                                    centred({2 * s.radius, 2 * s.radius, s.length + 2 * s.radius})));
+          },
+          [&](const Plane& s) { out.push_back(plane_solid(s, T)); },
+          [&](const MeshShape& s) { out.push_back(mesh_solid(s.mesh, T)); },
+          [&](const Voxels& s) {
+            const Eigen::Vector3d size = Eigen::Vector3d::Constant(s.resolution);
+            const auto box = std::make_shared<fcl::Boxd>(size);
+            for (const Eigen::Vector3d& centre : *s.centres) {
+              out.push_back(primitive(box, T * Eigen::Translation3d(centre), centred(size)));
+            }
+          },
+      },
+      item.shape);
 }
 
 void check_item(const LinkShape& item) {

@@ -29,8 +29,7 @@ std::vector<Solid> make_solids(const std::vector<LinkShape>& shapes);
 /// Axis-aligned bounds of the solid with its shape frame at T.
 Bounds bounds_at(const Solid& solid, const Pose& T_world_shape);
 
-/// True when two solids at these shape frames reach 1e-6 m into each other (5e-7 m with a mesh, meshes share a point).
-/// A solid wholly inside a closed mesh touches it.
+/// True when two solids at these shape frames share a point. A solid wholly inside a closed mesh touches it.
 bool touches(const Solid& a, const Pose& T_world_a, const Solid& b, const Pose& T_world_b);
 
 /// Largest distance of any point of the shapes from the body's origin (an upper bound); infinite for planes.

@@ -1,5 +1,6 @@
 #include "long_call.hpp"
 
+#include <pthread.h>
 #include <atomic>
 #include <chrono>
 #include <thread>
@@ -38,6 +39,7 @@ bool is_main_thread() {
 
 void end_calls_at_exit() {
   py::module_::import("atexit").attr("register")(py::cpp_function(&end_calls));
+  pthread_atfork(nullptr, nullptr, [] { g_waiting = 0; });  // a forked child has none of the other threads
 }
 
 bool LongCall::wait() {

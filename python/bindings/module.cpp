@@ -4,6 +4,7 @@
 #include "mmgrasp/collision/world.hpp"
 #include "mmgrasp/robot/joint_group.hpp"
 #include "thread_stacks.hpp"
+#include "unfit_arguments.hpp"
 
 namespace mmgrasp::python {
 
@@ -111,6 +112,7 @@ PYBIND11_MODULE(_core, m) {
   bind_plan_grippers(m);
   bind_verify(m);
   refuse_bare_objects(m);
+  explain_argument_errors(m);
   end_calls_at_exit();
   give_threads_room();
 }

@@ -1,14 +1,12 @@
 """Every field of a scenario changed in every way beside a plan that was made for it: what `verify --scenario` does not tell.
 
-As a script: `scenario_mutations.py [OF_EACH]`, all of them.
+(`mutation_shares.py` tries all of them.)
 """
 
 from __future__ import annotations
 
 import copy
 import json
-import sys
-import tempfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -16,7 +14,7 @@ from typing import Any
 import yaml
 
 import mmgrasp as mg
-from field_changes import Harmless, report, try_out
+from field_changes import Harmless
 from mmgrasp import _core
 from mmgrasp._files import ASSETS
 from mmgrasp.part_supply.plan_writer import scenario_to_dict
@@ -126,14 +124,8 @@ def tells(scenario: dict[str, Any], folder: Path) -> Callable[[dict[str, Any]], 
     return told
 
 
-def main() -> int:
-    of_each = int(sys.argv[1]) if len(sys.argv) > 1 else 1
+def whole_scenario() -> dict[str, Any]:
+    """The shipped storeroom's first tray with everything else that may stand in a scenario."""
     scenario = yaml.safe_load((ASSETS / "scenarios" / "storeroom.yaml").read_text())
     del scenario["trays"][1:]
-    scenario = full_scenario(scenario)
-    with tempfile.TemporaryDirectory() as folder:
-        return 1 if report(try_out(scenario, tells(scenario, Path(folder)), of_each), HARMLESS) else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+    return full_scenario(scenario)

@@ -362,3 +362,26 @@ def test_configurations_by_name(panda: mg.Robot) -> None:
     assert dict(zip(arm.names, arm.state(name), strict=True)) == values
     with pytest.raises(mg.InvalidInput, match=f"known are .*{name}"):
         arm.state("no such state")
+
+
+def test_links_that_lie_flush_and_stay_so_are_left_out(small: dict[str, Any], write: Any) -> None:
+    """The closed fingers of a second hand meet; with room between them they are checked."""
+
+    def reasons(closed: float) -> list[str]:
+        scenario = copy.deepcopy(small)
+        scenario["robot"]["mount"] = [
+            {
+                "urdf": "asset:grippers/parallel/parallel.urdf",
+                "parent_link": "base_link",
+                "pose": {"xyz": [-0.1, 0.22, 0.6], "rpy": [0.0, -1.2, 0.0]},
+                "prefix": "spare_",
+            }
+        ]
+        scenario["robot"]["joints"] |= {"spare_left_finger_joint": closed}
+        robot = mg.load_scenario(write(scenario)).setup.robot
+        return [
+            reason for a, b, reason in robot.disabled_pairs if {a, b} == {"spare_left_finger", "spare_right_finger"}
+        ]
+
+    assert reasons(0.0) == ["default"]
+    assert reasons(0.0001) == []

@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from .._argument_errors import checked
 from .._progress import Progress
 from .database import build_database as build_database
 from .engine import Engine as Engine
@@ -23,6 +24,7 @@ from .regions import ProblemSource as ProblemSource
 from .regions import compute_base_regions as compute_base_regions
 
 
+@checked
 def run_sweep(
     function: Callable[..., Any],
     items: Sequence[dict[str, Any]],

@@ -8,6 +8,7 @@ import tempfile
 from pathlib import Path
 from typing import Any, Unpack
 
+from .._argument_errors import checked
 from .._core import Error, InvalidInput, JointGroup, ReachDatabase
 from .._files import write_file
 from .._options import ReachOptions
@@ -20,6 +21,7 @@ from .regions import ProblemSource, named
 PARTS_A_SHARD = 4
 
 
+@checked
 def build_database(
     source: str | os.PathLike[str] | ProblemSource,
     path: str | os.PathLike[str],

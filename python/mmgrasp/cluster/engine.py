@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import _core
+from .._argument_errors import checked
 from .._core import Error, InvalidInput
 from .._progress import Progress
 from .content import Hasher, code_digest
@@ -117,6 +118,7 @@ class Engine:
         log.info("shard %s %s", event.shard[:12], words)
 
 
+@checked
 def shard_key(function: Callable[..., Any], item: dict[str, Any]) -> str:
     """Names a shard by the code, the function and the values it is called with."""
     return Hasher().add(code_digest()).add(f"{function.__module__}.{function.__qualname__}").add(item, "item").hex()
@@ -145,6 +147,7 @@ def default_folder() -> Path:
     return Path(_core.cache_folder()) / "shards"
 
 
+@checked
 @contextlib.contextmanager
 def connect(
     *,

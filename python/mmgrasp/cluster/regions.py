@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from .. import _core
+from .._argument_errors import checked
 from .._core import BaseGrid, BaseRegion, Error, Part, PartSupplyProblem, ReachDatabase, Tray
 from .._progress import Progress
 from ..scenario import Scenario, load_scenario
@@ -22,6 +23,7 @@ class ProblemSource(Protocol):
         """The problem, made where it is needed."""
 
 
+@checked
 def compute_base_regions(
     source: str | os.PathLike[str] | ProblemSource,
     *,

@@ -11,6 +11,7 @@ from types import ModuleType
 
 import numpy as np
 
+from .._argument_errors import checked
 from .._core import DepthCamera, DepthImage, InvalidInput, IoError
 from .._files import printable, read_head
 from ..documents.reading import near_miss
@@ -173,6 +174,7 @@ class FrameFolder:
         return self.sensors.get(name, Sensor(name))
 
 
+@checked
 def open_frames(folder: Path | str, sensors: Path | str | None = None) -> FrameFolder:
     """Recognises the layout and lists the frames.
 

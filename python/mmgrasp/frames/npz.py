@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from .._argument_errors import checked
 from .._core import InvalidInput
 from .._files import write_file
 from ..documents.reading import near_miss
@@ -46,6 +47,7 @@ def frames(folder: Path, root: Path, sensor: str) -> list[Frame]:
     return [Frame(path.relative_to(root).as_posix(), path, sensor) for path in sorted(folder.glob("*.npz"))]
 
 
+@checked
 def write_npz_frame(
     path: Path,
     depth: np.ndarray,

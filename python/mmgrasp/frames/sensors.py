@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from .._argument_errors import checked
 from .._core import DepthCamera, DepthNoise, InvalidInput, PinholeCamera
 from ..documents.reading import LONGEST_NAME, Node, read_yaml
 from .intrinsics import Intrinsics, read_intrinsics
@@ -96,6 +97,7 @@ class Sensor:
         }
 
 
+@checked
 def read_sensors(path: Path) -> dict[str, Sensor]:
     """The sensors of a file by name. Messages name file, line, key, value and rule."""
     root = read_yaml(path).root.mapping("version sensors")

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
+from .._argument_errors import checked
 from .._core import FingerGrip, GripperActuator, HoldingRequirement, InvalidInput, Mesh
 from .._files import ASSETS, shipped
 from ..documents.reading import Node, near_miss, read_yaml
@@ -123,6 +124,7 @@ def shipped_assembly(path: str | os.PathLike[str]) -> Path:
     return shipped(path)
 
 
+@checked
 def load_assembly(path: str | os.PathLike[str]) -> Assembly:
     """Reads an assembly: a file, or the name of a shipped one ("pulley").
 

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from .. import _core
+from .._argument_errors import checked
 from .._core import (
     AssemblyGrasp,
     AssemblyOperation,
@@ -120,6 +121,7 @@ def options_of(assembly: Assembly) -> dict[str, Any]:
     }
 
 
+@checked
 def plan_grippers(assembly: Assembly, *, progress: Progress = None) -> GripperPlan:
     """The least set of grippers for an assembly (P1 chapter 5): `mmgrasp.gripper_design.plan_grippers` for what a file says."""
     moved = [name for step in assembly.steps for name in step.active]

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .. import _core
+from .._argument_errors import checked
 from .._core import InvalidInput, Outcome
 from .._files import write_files
 from .._progress import Progress
@@ -112,6 +113,7 @@ def _fallen(rejections: _core.Rejections) -> str:
     return ", ".join(f"{cause} {count}" for cause, count in counts.items() if count) or "none counted"
 
 
+@checked
 def arrive(
     plan: ScenarioPlan | str | os.PathLike[str],
     stop: int,

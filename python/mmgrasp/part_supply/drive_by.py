@@ -17,6 +17,7 @@ from typing import Any, Unpack
 import numpy as np
 
 from .. import _core
+from .._argument_errors import checked
 from .._core import InvalidInput, JointGroup, Outcome, Pick, World
 from .._files import write_files
 from .._options import DriveByOptions
@@ -161,6 +162,7 @@ class DriveByPlan:
         return [*write_files(Path(folder), texts), *written]
 
 
+@checked
 def plan_drive_by_picks(
     plan: ScenarioPlan, *, progress: Progress = None, **options: Unpack[DriveByOptions]
 ) -> DriveByPlan:

@@ -7,6 +7,7 @@ import os
 from pathlib import Path
 from typing import Any
 
+from .._argument_errors import checked
 from .._core import InvalidInput
 from .._files import SCHEMAS
 from ..documents.reading import RENAMED, Node, read_json
@@ -15,6 +16,7 @@ from ..scenario.schema import check_schema
 VERSION = 4
 
 
+@checked
 def read_plan(path: str | os.PathLike[str]) -> dict[str, Any]:
     """The content of a plan.json; raises IoError or InvalidInput when it is not one, or not of its schema."""
     root = read_json(Path(path)).root

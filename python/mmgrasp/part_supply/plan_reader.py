@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from .._argument_errors import checked
 from .._core import RobotSource
 from .._core import verify as checks
 from .._files import printable, sha256_of
@@ -13,6 +14,7 @@ from ..documents.reading import Node
 from ..scenario.shapes import shape_from_node
 
 
+@checked
 def plan_to_check(root: Node) -> checks.PlanToCheck:
     """The plan as the checker takes it; every value is read strictly."""
     scenario = root["scenario"]

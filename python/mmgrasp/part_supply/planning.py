@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any, overload
 
 from .. import _core
+from .._argument_errors import checked
 from .._core import InvalidInput, Outcome, PartSupplyPlan, PartSupplyProblem, ReachDatabase, RobotMotion
 from .._files import write_file, write_files
 from .._progress import Progress
@@ -125,6 +126,7 @@ def plan_part_supply(
 def plan_part_supply(
     scenario: PartSupplyProblem, database: ReachDatabase, *, progress: Progress = None
 ) -> PartSupplyPlan: ...
+@checked
 def plan_part_supply(
     scenario: Scenario | PartSupplyProblem | str | os.PathLike[str],
     database: ReachDatabase | None = None,

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Unpack
 
+from .._argument_errors import checked
 from .._core import InvalidInput
 from .._core import verify as checks
 from .._options import CheckOptions
@@ -60,6 +61,7 @@ class PlanVerdict:
         }
 
 
+@checked
 def verify_plan(
     plan: dict[str, Any] | str | os.PathLike[str],
     *,

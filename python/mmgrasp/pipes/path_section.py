@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from .._argument_errors import checked
 from .._turns import between, rotation_about, rotation_vector
 from ..documents.reading import Node
 
@@ -13,11 +14,13 @@ MOST_POSES = 2000
 SAME_PLACE, SAME_TURN = 1e-6, 1e-6  # [m], [rad]
 
 
+@checked
 def line_poses(start: np.ndarray, end: np.ndarray, count: int) -> list[np.ndarray]:
     """`count` poses after `start`, evenly on the straight way to `end`, the last of them `end`."""
     return [between(start, end, i / count) for i in range(1, count + 1)]
 
 
+@checked
 def arc_poses(
     start: np.ndarray, centre: np.ndarray, axis: np.ndarray, angle: float, count: int, turns: bool = True
 ) -> list[np.ndarray]:

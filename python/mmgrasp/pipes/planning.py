@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from .._argument_errors import checked
 from .._core import (
     Error,
     Grasp,
@@ -116,6 +117,7 @@ class PipePlan:
         return "; ".join(text for _, text in lines)
 
 
+@checked
 def plan_pipe(problem: PipeProblem, progress: Progress = None) -> PipePlan:
     """Searches the best grasp, times the arm's motion with it (or with the next best, where it cannot be), checks that motion again, and says how the pipe bends at every pose."""
     task = problem.object_path_problem()

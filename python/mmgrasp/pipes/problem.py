@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from .. import _core
+from .._argument_errors import checked
 from .._core import (
     BeamFrame,
     Grasp,
@@ -149,6 +150,7 @@ def shipped_problem(path: str | os.PathLike[str]) -> Path:
     return shipped(path)
 
 
+@checked
 def load_pipe_problem(
     path: str | os.PathLike[str],
     *,

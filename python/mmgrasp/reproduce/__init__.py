@@ -8,6 +8,7 @@ import platform
 import time
 from typing import Any
 
+from .._argument_errors import checked
 from .._core import InvalidInput, __version__
 from .._progress import Progress
 from ..documents.reading import near_miss
@@ -80,6 +81,7 @@ ALSO = {
 }
 
 
+@checked
 def entry(name: str) -> Entry:
     """An entry by its name, or by that of a figure it draws."""
     wanted = str(name).lower()
@@ -89,6 +91,7 @@ def entry(name: str) -> Entry:
     return ENTRIES[wanted]
 
 
+@checked
 def reproduce(
     name: str, *, quick: bool = False, seed: int = 1, progress: Progress = None, sweep: Sweep = sweep_here
 ) -> dict[str, Any]:

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from .._argument_errors import checked
 from .._core import DepthImage, Error, IntegrationReport, InvalidInput, ProbabilisticSdf, _sdf_option_table
 from .._progress import Progress
 from ..frames import Frame, FrameFolder, LoadedFrame
@@ -84,6 +85,7 @@ class Scan:
         return cls(options, options.new_map())
 
 
+@checked
 def integrate_frames(
     folder: FrameFolder,
     scan: Scan,
@@ -140,6 +142,7 @@ def every_nth(frames: list[Frame], every: int) -> list[Frame]:
     return out
 
 
+@checked
 def choose_options(
     folder: FrameFolder, voxel: float | None, truncation: float | None, max_memory: float | None
 ) -> ScanOptions:

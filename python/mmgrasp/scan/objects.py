@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from .. import _core
+from .._argument_errors import checked
 from .._core import quat_xyzw_from_rotation
 from .plane import SupportingSurface, supporting_plane
 
@@ -42,6 +43,7 @@ class Segmentation:
     """(n,) of each point: its object, -1 the plane, -2 left out."""
 
 
+@checked
 def objects_on_plane(
     points: np.ndarray,
     normals: np.ndarray,
@@ -136,6 +138,7 @@ def _box_around(points: np.ndarray, carrier: SupportingSurface, cell: float) -> 
     return SegmentedObject(T, np.array([*(high - low), height]), min(1.0, seen))
 
 
+@checked
 def mean_up(T_world_cameras: Sequence[np.ndarray]) -> np.ndarray | None:
     """Where up is, guessed from how cameras are held: between the image's up and the way back from the scene.
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from .._argument_errors import checked
 from .._core import InvalidInput
 from .._files import write_file
 
@@ -42,6 +43,7 @@ def sigma_colours(sigmas: np.ndarray, low: float, high: float) -> np.ndarray:
     return np.asarray(((1 - rest) * _STOPS[i] + rest * _STOPS[i + 1] + 0.5).astype(np.uint8))
 
 
+@checked
 def write_ply(path: Path, vertices: np.ndarray, triangles: np.ndarray, sigmas: np.ndarray) -> None:
     """Binary, little endian: vertices (n, 3) as floats [m], colours by `sigmas` (n,) [m], which are a property of their own,
     and triangles (m, 3). Raises IoError.

@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from .._argument_errors import checked
 from .._core import InvalidInput, IoError, ProbabilisticSdf, __version__
 from .._files import printable
 from ..documents.reading import Node, read_json
@@ -24,6 +25,7 @@ _FATES = ("used", "out_of_range", "too_noisy", "too_slanted", "without_normal")
 _AGAIN = "make the map anew with --start-over"
 
 
+@checked
 def scan_to_dict(scan: Scan, map_name: str) -> dict[str, Any]:
     """The content of progress.json beside the map of that name."""
     return {
@@ -38,6 +40,7 @@ def scan_to_dict(scan: Scan, map_name: str) -> dict[str, Any]:
     }
 
 
+@checked
 def read_scan(path: Path) -> Scan:
     """The scan whose progress.json this is, with its map. Raises InvalidInput or IoError naming file, key, value and rule."""
     root = read_json(path).root

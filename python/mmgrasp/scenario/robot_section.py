@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from .. import _core
+from .._argument_errors import checked
 from .._core import (
     Box,
     Hand,
@@ -23,7 +24,7 @@ from .._core import (
 from .._files import ASSETS, shipped
 from .._progress import Progress
 from ..documents.reading import RENAMED, Node, near_miss, read_yaml
-from .closed_fingers import fingers_may_meet
+from .closed_fingers import fingers_may_meet, held_links_may_meet
 from .shapes import read_shapes
 from .wheels import limits_of_wheels
 
@@ -133,6 +134,7 @@ def _profile_sections(profile: Node) -> RobotSections:
     return RobotSections(profile["robot"], profile["gripper"], place_region)
 
 
+@checked
 def read_gripper(source: str) -> Hand:
     """The gripper of a robot profile (name or file) or of a scenario, `asset:...` for a shipped one.
 
@@ -172,7 +174,8 @@ def read_setup(sections: RobotSections, progress: Progress = None) -> RobotSetup
     closed = gripper.joint_values(0.0)
     arm = _read_group(robot, node["group"], tool_link)
     _check_joint_owners(sections, arm)
-    arm = arm.with_reference({**other, **closed})
+    robot = held_links_may_meet(robot, arm, gripper, other)
+    arm = _read_group(robot, node["group"], tool_link).with_reference({**other, **closed})
     home = _read_home(node["home"], arm)
     _fixed_to_root(arm, sections.place_region["parent"], home)
     if "finger_links" in sections.gripper:

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from .. import _core
+from .._argument_errors import checked
 from .._core import CollisionChecker, InvalidInput, IoError, LinkShape, PartSupplyProblem, Plane, ReachDatabase, World
 from .._core import verify as checks
 from .._files import check_folder, shipped
@@ -144,6 +145,7 @@ class Scenario:
         )
 
 
+@checked
 def load_scenario(
     path: str | os.PathLike[str],
     *,

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .. import _core
+from .._argument_errors import checked
 from .._core import (
     Box,
     Capsule,
@@ -128,6 +129,7 @@ class Built:
     """Height of the floor [m]."""
 
 
+@checked
 def build(
     robot: Robot,
     world: World,

@@ -22,20 +22,34 @@ double clearance(const BaseGrid& grid, const CellMask& shared, int heading, cons
   return least;
 }
 
-}  // namespace
-
-std::vector<Stop> alternative_base_poses(const BaseGrid& grid, const std::vector<BaseRegion>& regions, const Stop& stop,
-                                         double min_radius, double apart, std::size_t count) {
+int layer_of(const BaseGrid& grid, const Stop& stop) {
   int heading = 0;
   while (heading < static_cast<int>(grid.headings.size()) &&
          std::abs(wrap_angle(grid.headings[heading] - stop.pose.z())) > 1e-9) {
     ++heading;
   }
-  if (heading == static_cast<int>(grid.headings.size())) return {};
+  return heading;
+}
+
+CellMask shared_cells(const BaseGrid& grid, const std::vector<BaseRegion>& regions, const Stop& stop) {
   CellMask shared(grid.size(), 1);
   for (TrayId tray : stop.trays) {
     for (std::size_t i = 0; i < shared.size(); ++i) shared[i] = shared[i] && regions[tray].cells[i];
   }
+  return shared;
+}
+
+}  // namespace
+
+double room_around(const BaseGrid& grid, const std::vector<BaseRegion>& regions, const Stop& stop) {
+  return clearance(grid, shared_cells(grid, regions, stop), layer_of(grid, stop), stop.pose.head<2>());
+}
+
+std::vector<Stop> alternative_base_poses(const BaseGrid& grid, const std::vector<BaseRegion>& regions, const Stop& stop,
+                                         double min_radius, double apart, std::size_t count) {
+  const int heading = layer_of(grid, stop);
+  if (heading == static_cast<int>(grid.headings.size())) return {};
+  const CellMask shared = shared_cells(grid, regions, stop);
   std::vector<Stop> candidates;
   for (int iy = 0; iy < grid.ny; ++iy) {
     for (int ix = 0; ix < grid.nx; ++ix) {

@@ -173,7 +173,10 @@ class PartSupply {
     std::vector<BaseRegion> left;
     for (int round = 0;; ++round) {
       failed_.clear();
-      if (plan_picks_and_route()) return true;
+      if (plan_picks_and_route()) {
+        if (round > 0) measure_in_regions(std::move(first.intersections));
+        return true;
+      }
       if (round == 0) {
         first = plan_;
         left = plan_.regions;
@@ -187,6 +190,13 @@ class PartSupply {
     }
     plan_ = std::move(first);
     return false;
+  }
+
+  /// Stops that were sought with base poses closed are described in the regions as they are, closed poses included.
+  void measure_in_regions(Intersections candidates) {
+    for (Stop& stop : plan_.stops) stop.radius = room_around(plan_.grid, plan_.regions, stop);
+    plan_.intersections = plan_intersections(plan_.grid, plan_.regions, problem_.options.positioning_uncertainty,
+                                             std::move(candidates), plan_.stops);
   }
 
   void start_again(const PartSupplyPlan& first) {

@@ -1,0 +1,154 @@
+"""How many changes of plans and scenarios `verify` refuses, of every field in every way; the table in docs/methods/verify.md.
+
+    python tests/python/mutation_shares.py [OF_EACH [MINUTES]]    goes on where the last run ended (build/mutations), each at most so long
+    python tests/python/mutation_shares.py --write                puts the shares of the last run into the page
+
+Of places that differ in indices alone OF_EACH (4) are tried. It fails on a change that goes unnoticed without a reason, on a
+reason that nothing needs, and on a share below the least.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+from collections import Counter
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from random import Random
+from typing import Any, NamedTuple
+
+import plan_mutations
+import scenario_mutations
+from conftest import REPOSITORY
+from field_changes import Change, Harmless, all_changes, changed, explained, pattern
+
+FOLDER = REPOSITORY / "build" / "mutations"
+PAGE = REPOSITORY / "docs" / "methods" / "verify.md"
+BEGIN, END = "<!-- shares: written by tests/python/mutation_shares.py -->", "<!-- end of shares -->"
+SMALL = ("more", "less")
+
+
+class Case(NamedTuple):
+    title: str
+    harmless: Harmless
+    least: float
+    """Share that must be refused [%]."""
+
+
+CASES = {
+    "alone": Case("a plan, without a scenario", plan_mutations.HARMLESS_ALONE, 99.0),
+    "beside": Case("a plan beside its scenario", plan_mutations.HARMLESS, 99.0),
+    "scenario": Case("a scenario beside its plan", scenario_mutations.HARMLESS, 98.0),
+}
+Judge = Callable[[dict[str, Any]], dict[str, bool]]
+
+
+def documents(folder: Path) -> Iterator[tuple[str, dict[str, Any], Judge]]:
+    """What is changed, under its name, and which cases refuse it."""
+    kept = folder / "plan.json"
+    if not kept.exists():
+        kept.write_text(json.dumps(plan_mutations.plan_and_scenario(folder)))
+    plan, expected = json.loads(kept.read_text())
+    alone = plan_mutations.refuses(None, 200)
+
+    def of_plan(values: dict[str, Any]) -> dict[str, bool]:
+        by_itself = alone(values)
+        return {"alone": by_itself, "beside": by_itself or plan_mutations.differs(values, expected)}
+
+    yield "plan", plan, of_plan
+    scenario = scenario_mutations.whole_scenario()
+    told = scenario_mutations.tells(scenario, folder)
+    yield "scenario", scenario, lambda values: {"scenario": told(values)}
+
+
+def run(of_each: int, minutes: float) -> bool:
+    """Tries what was not tried yet; whether everything is."""
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    is_whole = True
+    for name, document, judge in documents(FOLDER):
+        ends = time.monotonic() + 60 * minutes
+        answers = FOLDER / f"{name}_{of_each}.jsonl"
+        done = len(answers.read_text().splitlines()) if answers.exists() else 0
+        assert done or not any(judge(document).values()), f"the {name} as it was made is refused"
+        changes = list(all_changes(document, of_each))
+        order = Random(1).sample(range(len(changes)), len(changes))  # what was tried so far is a fair sample of all
+        with answers.open("a") as out:
+            for number in range(done, len(changes)):
+                if time.monotonic() > ends:
+                    print(f"{name}: {number} of {len(changes)} tried")
+                    is_whole = False
+                    break
+                change = changes[order[number]]
+                refused = judge(changed(document, change.place, change.new))
+                out.write(json.dumps({"field": change.field, "kind": change.kind, **refused}) + "\n")
+                out.flush()
+    return is_whole
+
+
+def results(case: str, of_each: int) -> list[tuple[Change, bool]]:
+    """Each change that was tried, and whether it was refused."""
+    file = FOLDER / f"{'scenario' if case == 'scenario' else 'plan'}_{of_each}.jsonl"
+    rows = [json.loads(line) for line in file.read_text().splitlines()]
+    return [(Change(tuple(r["field"]), r["kind"], (), None), r[case]) for r in rows]
+
+
+def share(count: int, of: int) -> str:
+    return f"{100 * count / of:.2f} %"
+
+
+def faults(case: str, of_each: int, is_whole: bool) -> list[str]:
+    """What is wrong with the answers; that every reason is needed shows when all changes were tried."""
+    tried = results(case, of_each)
+    left = [change for change, refused in tried if not refused]
+    found = [
+        f"{case}: {pattern(c.field)}: {c.kind}: not refused, and no reason given"
+        for c in left
+        if not explained(c, CASES[case].harmless)
+    ]
+    unneeded = CASES[case].harmless.keys() - {pattern(change.field) for change in left} if is_whole else set()
+    found += [f"{case}: {name}: listed as harmless, every change was refused" for name in sorted(unneeded)]
+    if 100 * len(left) > (100 - CASES[case].least) * len(tried):
+        found.append(f"{case}: {len(left)} of {len(tried)} not refused: less than {CASES[case].least} % are")
+    return found
+
+
+def table(of_each: int) -> str:
+    """The shares as the page has them: by the size of a change, and of each reason."""
+    lines = ["| what is changed | changes | refused | small ones (2 %, or 0.01) | others |", "|---|---|---|---|---|"]
+    reasons = ["| not refused | changes | share | why |", "|---|---|---|---|"]
+    for name, case in CASES.items():
+        tried = results(name, of_each)
+        row = [case.title, str(len(tried)), share(sum(refused for _, refused in tried), len(tried))]
+        for is_small in (True, False):
+            some = [refused for change, refused in tried if (change.kind in SMALL) == is_small]
+            row.append(f"{sum(some)} of {len(some)}, {share(sum(some), len(some))}")
+        lines.append("| " + " | ".join(row) + " |")
+        left = Counter(pattern(change.field) for change, refused in tried if not refused)
+        for field, count in sorted(left.items(), key=lambda item: (-item[1], item[0])):
+            why = case.harmless.get(field, ("", "no reason given"))[1]
+            reasons.append(f"| {name}: `{field}` | {count} | {share(count, len(tried))} | {why} |")
+    return "\n".join([*lines, "", *reasons])
+
+
+def write(of_each: int) -> None:
+    text = PAGE.read_text()
+    before, rest = text.split(BEGIN)
+    PAGE.write_text(f"{before}{BEGIN}\n\n{table(of_each)}\n\n{END}{rest.split(END)[1]}")
+
+
+def main() -> int:
+    words = [float(word) for word in sys.argv[1:] if word != "--write"]
+    of_each = int(words[0]) if words else 4
+    if "--write" in sys.argv:
+        write(of_each)
+        return 0
+    is_whole = run(of_each, words[1] if len(words) > 1 else 1e6)
+    print(table(of_each))
+    wrong = [fault for case in CASES for fault in faults(case, of_each, is_whole)]
+    print("\n".join(wrong))
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -116,3 +116,39 @@ def test_trying_all_sets_is_what_it_says() -> None:
         ]
         assert every_set(masks, parts, len(masks)) == min(sizes, default=len(masks) + 1)
     assert every_set([1 << i for i in range(12)] * 3, 12, 11, tries=1000) is None
+
+
+@pytest.mark.parametrize("fingers", [2, 3])
+def test_files_mean_the_same_to_mujoco(fingers: int, tmp_path: Path) -> None:
+    """Read by MuJoCo's own URDF reader, pads are half an opening off the axis at either end of the stroke, tips a finger's length off the palm."""
+    mujoco = pytest.importorskip("mujoco")
+    gripper = mg.gripper_design.Gripper(
+        name="g",
+        actuator="drive",
+        fingers=fingers,
+        min_opening=0.01,
+        max_opening=0.04,
+        finger_length=0.05,
+        finger_width=0.015,
+        finger_thickness=0.008,
+    )
+    gripper.to_urdf(tmp_path)
+    model = mujoco.MjModel.from_xml_path(str(tmp_path / "gripper.urdf"))
+    data = mujoco.MjData(model)
+    assert model.njnt == fingers
+    for share, opening in ((0.0, gripper.min_opening), (1.0, gripper.max_opening)):
+        data.qpos[:] = model.jnt_range[:, 0] + share * (model.jnt_range[:, 1] - model.jnt_range[:, 0])
+        mujoco.mj_forward(model, data)
+        meshes = [g for g in range(model.ngeom) if model.geom_type[g] == mujoco.mjtGeom.mjGEOM_MESH]
+        assert len(meshes) == fingers
+        outward = [data.xaxis[j] for j in range(fingers)]
+        for geom, axis in zip(meshes, outward, strict=True):
+            mesh = model.geom_dataid[geom]
+            first, count = model.mesh_vertadr[mesh], model.mesh_vertnum[mesh]
+            corners = (
+                model.mesh_vert[first : first + count] @ data.geom_xmat[geom].reshape(3, 3).T + data.geom_xpos[geom]
+            )
+            assert (corners @ axis).min() == pytest.approx(opening / 2, abs=1e-6)
+            assert corners[:, 2].max() == pytest.approx(gripper.palm_height + gripper.finger_length, abs=1e-6)
+        turns = np.sort(np.degrees(np.arctan2(*np.array(outward)[:, 1::-1].T)) % 360)
+        assert np.diff(turns) == pytest.approx([360 / fingers] * (fingers - 1), abs=1e-6)

@@ -45,6 +45,15 @@ def test_faces_of_composed_parts(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
+def test_inward_edges_around_an_axis_through_themselves_end(tmp_path: Path) -> None:
+    """Some of this noisy pulley's edges, taken for a thread, lie on that thread's axis: its pitch was sought without end."""
+    part, noise = composed_parts(29)[28]
+    _, truth, found = segmented(part, noise, 28, tmp_path)
+    assert found.threads == []
+    assert faces_right(truth, found.labels) >= 0.95
+
+
+@pytest.mark.slow
 def test_widths_of_composed_parts(tmp_path: Path) -> None:
     """Every width that is offered for a cylinder of a shaft is its diameter, within 0.1 mm."""
     offered = 0

@@ -27,6 +27,8 @@ constexpr double kInPhase = 0.3;
 constexpr double kPhase = 0.8;
 /// Pitches looked for, in radii of the root.
 constexpr double kFinest = 0.02, kCoarsest = 1.5;
+/// The pitch is sought in so much of a thread above and below its middle, in radii of the root.
+constexpr double kLookedAt = 50;
 /// Edges of a chain may differ in radius by this share of the pitch (standard deviation).
 constexpr double kRadius = 0.15;
 /// Edges that differ more in direction from the helix are left out of its fit: the sine of the angle.
@@ -196,13 +198,25 @@ std::optional<std::vector<int>> edges_in_phase(const FaceGraph& graph, const std
   }
   if (length <= 0) return std::nullopt;
   radius /= length;
-  const double span = heights.high - heights.low;
-  if (!(span > kFinest * radius)) return std::nullopt;
+  // The steps grow with the height looked at: without an end where the edges lie on the axis itself, as those of a bore
+  // may with noise.
+  const double middle = (heights.low + heights.high) / 2;
+  std::vector<Turn> near;
+  Range looked_at;
+  length = 0;
+  for (const Turn& t : turns) {
+    if (std::abs(t.height - middle) > kLookedAt * radius) continue;
+    near.push_back(t);
+    length += t.length;
+    looked_at.add(t.height);
+  }
+  const double span = looked_at.high - looked_at.low;
+  if (near.empty() || !(radius > 0) || !(span > kFinest * radius)) return std::nullopt;
   const double most = 2 * kPi / (kFinest * radius), least = 2 * kPi / (kCoarsest * radius), step = 1 / span;
   double best = 0, coherent = -1;
   for (double w = least; w <= most; w += step) {
     for (const double tried : {w, -w}) {
-      const double found = std::abs(unwound(turns, tried));
+      const double found = std::abs(unwound(near, tried));
       if (found <= coherent) continue;
       coherent = found;
       best = tried;
@@ -210,7 +224,7 @@ std::optional<std::vector<int>> edges_in_phase(const FaceGraph& graph, const std
   }
   for (double part = step / 2; part > 1e-4 * step; part /= 2) {
     for (const double tried : {best - part, best + part}) {
-      const double found = std::abs(unwound(turns, tried));
+      const double found = std::abs(unwound(near, tried));
       if (found <= coherent) continue;
       coherent = found;
       best = tried;

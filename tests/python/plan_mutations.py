@@ -45,24 +45,6 @@ HARMLESS: Harmless = {
 }
 """Changes that may go unnoticed, and why they do no harm."""
 
-_OF_ITS_FILES = "where the robot's files were: their texts are in the plan"
-_BY_DEFAULT = "the default is the storeroom's own"
-HARMLESS_ALONE: Harmless = {
-    **HARMLESS,
-    "scenario.robot.urdf": ("misspelt, other", _OF_ITS_FILES),
-    "scenario.robot.srdf": ("misspelt, other", _OF_ITS_FILES),
-    "scenario.robot.urdfs[].urdf": ("misspelt, other", _OF_ITS_FILES),
-    "scenario.robot.urdfs[].origin": ("misspelt, other, emptied", _OF_ITS_FILES),
-    "scenario.robot.base_limits": ("emptied", _BY_DEFAULT),
-    **{
-        f"scenario.robot.base_limits.{axis}_{what}": ("removed", _BY_DEFAULT)
-        for axis in ("linear", "angular")
-        for what in ("velocity", "acceleration")
-    },
-    "scenario.robot.base_limits.workspace": ("more, less, doubled", "the plan stays within it"),
-}
-"""As HARMLESS, without a scenario file to compare with."""
-
 ARRIVALS = [[4e-4, 1e-4, 0.0], [1e-4, 4e-4, 0.0], [0.0, 0.0, 3e-4]]
 """A covariance of arrivals for the plan, so that what is counted of them is changed, too."""
 

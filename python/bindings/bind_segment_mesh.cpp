@@ -35,7 +35,7 @@ const std::vector<OptionField<MeshSegmentationOptions>>& mesh_segmentation_field
                 "P1's mean length of the rays, not the width between the surfaces"),
       option<O>("max_clusters", &O::max_clusters, "most Gaussians over the logarithms of the diameters"),
       option<O>("smoothing", &O::smoothing, "cost of a border between clusters beside faces in the wrong one"),
-      option<O>("crease", &O::crease, "edges that bend inwards by more part segments [rad]"),
+      option<O>("crease", &O::crease, "inward creases of more, sharp or rounded over min_size, part segments [rad]"),
       option<O>("min_size", &O::min_size, "narrower segments join a neighbour, as a share of the mesh's diagonal"),
       option<O>("convexity", &O::convexity,
                 "segments join when their hull has at most this share of the smaller one's volume in neither"),

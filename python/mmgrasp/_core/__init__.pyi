@@ -7697,7 +7697,7 @@ def segment_mesh(mesh: Mesh, *, progress: collections.abc.Callable[[str, float],
         ray_lengths: bool = False  # P1's mean length of the rays, not the width between the surfaces
         max_clusters: int = 8  # most Gaussians over the logarithms of the diameters
         smoothing: float = 0.3  # cost of a border between clusters beside faces in the wrong one
-        crease: float = 0.6  # edges that bend inwards by more part segments [rad]
+        crease: float = 0.6  # inward creases of more, sharp or rounded over min_size, part segments [rad]
         min_size: float = 0.02  # narrower segments join a neighbour, as a share of the mesh's diagonal
         convexity: float = 0.05  # segments join when their hull has at most this share of the smaller one's volume in neither
         smooth_threads: bool = True  # screw threads count as the cylinder through their crests

@@ -15,10 +15,10 @@ namespace mmgrasp {
 /// joins again.
 struct MMGRASP_EXPORT MeshSegmentationOptions {
   ShapeDiameterOptions diameter;
-  int max_clusters = 8;        ///< Most Gaussians over the logarithms of the diameters; in [1, 32].
-  double smoothing = 0.3;      ///< What a border between clusters costs beside faces in the wrong one; >= 0.
-  double crease = 0.6;         ///< Edges and rounded edges that bend inwards by more part segments [rad]; in (0, pi).
-  double min_size = 0.02;      ///< Narrower segments join a neighbour, as a share of the mesh's diagonal; in (0, 0.5).
+  int max_clusters = 8;    ///< Most Gaussians over the logarithms of the diameters; in [1, 32].
+  double smoothing = 0.3;  ///< What a border between clusters costs beside faces in the wrong one; >= 0.
+  double crease = 0.6;     ///< Inward creases of more, sharp or rounded over min_size, part segments [rad]; in (0, pi).
+  double min_size = 0.02;  ///< Narrower segments join a neighbour, as a share of the mesh's diagonal; in (0, 0.5).
   double convexity = 0.05;     ///< Segments join when their hull has at most this share of the smaller one's volume
                                ///< that belongs to neither; >= 0.
   bool smooth_threads = true;  ///< Screw threads count as the cylinder through their crests.

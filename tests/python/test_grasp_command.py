@@ -100,7 +100,7 @@ def test_patches_lie_on_the_faces_and_are_drawn(
 
 
 def test_the_arm_gets_to_every_grasp(scanned: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """By the robot's own kinematics at its place, and free of the true table and of the other box, which the command has never seen."""
+    """The robot's own kinematics at its place say so, and it is free of the true table and the other box, which the command has never seen."""
     standing = [-0.8, 0.0, -0.7, 0.1]
     capsys.readouterr()
     base = "--base=" + ",".join(map(str, standing))

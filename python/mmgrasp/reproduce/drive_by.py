@@ -288,13 +288,16 @@ def solve_common(count: int, seed: int, knows_the_task: bool, solver: str) -> di
     """Random tasks on the way, each by both formulations."""
     rng = np.random.default_rng(seed)
     waypoints = WAYPOINTS if solver == "ipopt" else SMALL
+    _, group = whole_body()
     found: list[dict[str, Any]] = []
     while len(found) < count:
         side = float(rng.choice([-1, 1]))
         place = (float(rng.uniform(3, 7)), side * float(rng.uniform(1, 2.5)), float(rng.uniform(0.4, 0.8)))
-        both = solved_both_ways(place, waypoints, solver, knows_the_task, iterations=300)
-        if both is not None:
-            found.append(both)
+        T_target = _core.pose(place, ANGLES)
+        tasks = [_core.DriveByTask(T_target)]
+        program = _core.drive_by_program(group, start=START, tasks=tasks, goal=GOAL, waypoints=waypoints)
+        if program is not None:
+            found.append(solved_both_ways(program, group, T_target, solver, knows_the_task, iterations=300))
     return {"found": found}
 
 

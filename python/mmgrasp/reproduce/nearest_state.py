@@ -133,17 +133,14 @@ def guess_of(program: _core.WholeBodyProgram, knows_the_task: bool) -> np.ndarra
 
 
 def solved_both_ways(
-    place: tuple[float, float, float], waypoints: int, solver: str, knows_the_task: bool, iterations: int
-) -> dict[str, dict[str, Any]] | None:
-    """One task from one guess by both formulations: solved or not, iterations, duration, intervals that the task was in. None: out of reach."""
-    from .drive_by import ANGLES, GOAL, START, whole_body
-
-    _, group = whole_body()
-    T_target = _core.pose(place, ANGLES)
-    tasks = [_core.DriveByTask(T_target)]
-    program = _core.drive_by_program(group, start=START, tasks=tasks, goal=GOAL, waypoints=waypoints)
-    if program is None:
-        return None
+    program: _core.WholeBodyProgram,
+    group: _core.JointGroup,
+    T_target: np.ndarray,
+    solver: str,
+    knows_the_task: bool,
+    iterations: int,
+) -> dict[str, dict[str, Any]]:
+    """The program's one task from one guess by both formulations: solved or not, iterations, duration, intervals that the task was in."""
     found = {}
     problems = {COMMON: NearestStateProblem(program, group, T_target), OWN: program.problem}
     for name, problem in problems.items():

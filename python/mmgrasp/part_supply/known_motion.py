@@ -31,7 +31,7 @@ class KnownPick:
     plan: ScenarioPlan
     problem: _core.PartSupplyProblem
     index: int
-    """Of the pick in the plan."""
+    """Index of the pick in the plan."""
 
     @property
     def pick(self) -> Pick:
@@ -55,7 +55,7 @@ class KnownPick:
 
     @property
     def opening(self) -> float:
-        """Of the hand as it comes [m]."""
+        """Opening of the hand as it comes [m]."""
         return self.pick.motions[0].opening
 
     @property

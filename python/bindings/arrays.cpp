@@ -112,8 +112,7 @@ Eigen::VectorXd vector_argument(const py::handle& value, const std::string& name
 }
 
 std::vector<double> list_argument(const py::handle& value, const std::string& name, double largest) {
-  const bool none = PySequence_Check(value.ptr()) != 0 && PySequence_Size(value.ptr()) == 0;  // [] has no type
-  const Eigen::VectorXd numbers = none ? Eigen::VectorXd() : vector_argument(value, name, -1, largest);
+  const Eigen::VectorXd numbers = vector_argument(value, name, -1, largest);
   return {numbers.begin(), numbers.end()};
 }
 

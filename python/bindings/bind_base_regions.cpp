@@ -32,9 +32,8 @@ void bind_region_classes(py::module_& m) {
              const BaseGrid grid{vector2_argument(origin, "origin"), resolution, nx, ny,
                                  list_argument(headings, "headings")};
              require_length(resolution, "resolution");
-             if (nx <= 0 || ny <= 0 || grid.headings.empty()) {
-               throw InvalidInput("BaseGrid: nx and ny must be > 0 and headings not empty");
-             }
+             if (nx <= 0 || ny <= 0) throw InvalidInput("BaseGrid: nx and ny must be > 0");
+             if (grid.headings.empty()) throw InvalidInput("headings has shape (0,): must hold at least one [rad]");
              return grid;
            }),
            py::arg("origin"), py::arg("resolution"), py::arg("nx"), py::arg("ny"),

@@ -77,13 +77,18 @@ void bind_checked_parts(py::module_& m) {
            py::arg("stop"), py::arg("tray"), py::arg("part"), py::arg("grasp"), py::arg("motions"),
            "Index of its stop, names of tray and part, index into the part's grasps, motions in order.");
   py::class_<CheckedDriveBy>(
-      m, "CheckedDriveBy", "A drive to a stop and the first pick there up to its lift, in one motion of base and arm.")
-      .def(py::init([](int pick, double close_at, double closed_at, CheckedMotion motion) {
-             return CheckedDriveBy{pick, close_at, closed_at, std::move(motion)};
+      m, "CheckedDriveBy",
+      "A pick in one motion of base and arm, with the drive to its stop where it is the first one there.")
+      .def(py::init([](int pick, double close_at, double closed_at, CheckedMotion motion, bool from_release,
+                       bool to_release) {
+             return CheckedDriveBy{pick, close_at, closed_at, std::move(motion), from_release, to_release};
            }),
            py::arg("pick"), py::arg("close_at"), py::arg("closed_at"), py::arg("motion"),
+           py::arg("from_release") = false, py::arg("to_release") = false,
            "`pick`: index into the plan's picks; the fingers begin to close at `close_at` [s] and hold the part from "
-           "`closed_at`\n[s] on; rows of `motion` hold x, y, theta, then the arm's joints.");
+           "`closed_at`\n[s] on; rows of `motion` hold x, y, theta, then the arm's joints. `from_release`: it begins "
+           "where the pick before\nlets its part go, else at home; `to_release`: it ends where the part is let go, "
+           "else once it is lifted.");
   py::class_<CheckedStop>(m, "CheckedStop", "A stop of the base.")
       .def(py::init([](const ArrayLike& pose, double radius, std::vector<std::string> trays, int arrivals,
                        int arrivals_served) {

@@ -65,11 +65,12 @@ def test_plan_in_passing(small_path: Path, tmp_path: Path, capfd: pytest.Capture
     assert main(["plan", str(small_path), "-o", str(tmp_path), "--drive-by", "--no-pictures"]) == 0
     printed = capfd.readouterr()
     assert "parts taken in passing" in printed.out
-    assert "drive-by 1 of 1" in printed.err
+    assert "drive-by 1 of 2" in printed.err
+    assert "drive-by 2 of 2" in printed.err
     saved = json.loads((tmp_path / "drive_by.json").read_text())["saved"]
     assert saved > 1.0
     assert f"{saved:.1f} s" in printed.out
-    assert len(list((tmp_path / "trajectories").glob("drive_by_*.csv"))) == 1
+    assert len(list((tmp_path / "trajectories").glob("drive_by_*.csv"))) == 2
     assert main(["verify", str(tmp_path / "plan.json"), "--scenario", str(small_path)]) == 0
     plan = read_plan(tmp_path / "plan.json")
     motion = plan["drive_by"]["motions"][0]

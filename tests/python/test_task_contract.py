@@ -42,7 +42,7 @@ def plan(base: str, tasks: list[mg.DriveByTask]) -> tuple[mg.planning.DriveByRes
 
 
 def error(group: mg.robot.JointGroup, found: mg.planning.DriveByResult, T: np.ndarray, waypoint: int) -> np.ndarray:
-    """Of the tool in the task's frame: x, y, z [m], then the rotation vector [rad]."""
+    """Where the tool is in the task's frame: x, y, z [m], then the rotation vector [rad]."""
     between = np.linalg.inv(T) @ group.fk(found.trajectory.positions[waypoint])
     turn = between[:3, :3]
     angle = np.arccos(np.clip((np.trace(turn) - 1) / 2, -1, 1))
@@ -51,7 +51,7 @@ def error(group: mg.robot.JointGroup, found: mg.planning.DriveByResult, T: np.nd
 
 
 def tool_speed(group: mg.robot.JointGroup, found: mg.planning.DriveByResult, time: float) -> float:
-    """By differences of the tool's places [m/s]."""
+    """Speed of the tool by differences of its places [m/s]."""
     h = 1e-5
     ends = [group.fk(found.trajectory.at(time + s * h))[:3, 3] for s in (-1, 1)]
     return float(np.linalg.norm(ends[1] - ends[0]) / (2 * h))

@@ -59,12 +59,13 @@ class CheckedPick:
         """
 class CheckedDriveBy:
     """
-    A drive to a stop and the first pick there up to its lift, in one motion of base and arm.
+    A pick in one motion of base and arm, with the drive to its stop where it is the first one there.
     """
-    def __init__(self, pick: int, close_at: float, closed_at: float, motion: CheckedMotion) -> None:
+    def __init__(self, pick: int, close_at: float, closed_at: float, motion: CheckedMotion, from_release: bool = False, to_release: bool = False) -> None:
         """
         `pick`: index into the plan's picks; the fingers begin to close at `close_at` [s] and hold the part from `closed_at`
-        [s] on; rows of `motion` hold x, y, theta, then the arm's joints.
+        [s] on; rows of `motion` hold x, y, theta, then the arm's joints. `from_release`: it begins where the pick before
+        lets its part go, else at home; `to_release`: it ends where the part is let go, else once it is lifted.
         """
 class CheckedStop:
     """

@@ -59,7 +59,9 @@ def _add_plan(commands: Commands) -> None:
     )
     parser.add_argument("--seed", type=_seed, metavar="N", help="same seed, same plan")
     parser.add_argument(
-        "--drive-by", action="store_true", help="take the first part at each stop without stopping for it"
+        "--drive-by",
+        action="store_true",
+        help="make one motion of each pick and the way to it: base and arm do not stop for parts",
     )
     parser.add_argument("--no-pictures", action="store_true", help="write plan.json and the trajectories only")
 

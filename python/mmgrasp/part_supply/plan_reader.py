@@ -163,6 +163,8 @@ def _read_answer(plan: checks.PlanToCheck, root: Node) -> None:
                 node["close_at"].number(),
                 node["closed_at"].number(),
                 _read_motion(node, "drive-by", False, 3 + len(plan.arm_joints)),
+                from_release="begins" in node and node["begins"].choice("home", "release") == "release",
+                to_release="ends" in node and node["ends"].choice("lift", "release") == "release",
             )
             for node in root["drive_by"]["motions"].elements()
         ]

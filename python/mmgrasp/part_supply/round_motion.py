@@ -2,11 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
 
 from .. import _core
 from .._core import InvalidInput, Outcome, PartSupplyPlan, RobotMotion
 from ..scenario import Scenario
+
+
+@dataclass(frozen=True)
+class InPassing:
+    """A motion that takes the place of a pick's motions up to where the part is let go, and of the drive to it where it is the first of its stop."""
+
+    result: _core.DriveByResult
+    from_release: bool
+    """And of the retreat of the pick before."""
 
 
 class RoundMotion:
@@ -18,9 +28,10 @@ class RoundMotion:
         self.plan, self.scenario, self.setup = plan, scenario, scenario.setup
         self.motion: RobotMotion | None = None
         self.opening: float | None = None
+        self.held: str | None = None  # what a motion in passing brought to the bin
 
-    def make(self, in_passing: Mapping[int, tuple[_core.DriveByResult, Sequence[str]]]) -> RobotMotion:
-        """The round; `in_passing`: for the index of a pick the motion that takes the place of the drive to it and of these of its motions."""
+    def make(self, in_passing: Mapping[int, InPassing]) -> RobotMotion:
+        """The round; `in_passing`: what is done so, by the pick's index."""
         plan = self.plan
         for leg, drive in enumerate(plan.route):
             picks = [i for i, pick in enumerate(plan.picks) if pick.stop == leg]
@@ -28,10 +39,11 @@ class RoundMotion:
                 arm = self.motion.positions[-1] if self.motion is not None else self.setup.home
                 self._add(RobotMotion.of_drive(drive, self.setup.robot, self.setup.arm, arm))
             for i in picks:
-                result, merged = in_passing.get(i, (None, ()))
-                if result is not None:
-                    self._pass(plan.picks[i], result)
-                self._pick(plan.picks[i], merged)
+                left_out = {"retreat"} if i + 1 in in_passing and in_passing[i + 1].from_release else set()
+                if i in in_passing:
+                    self._pass(plan.picks[i], in_passing[i].result)
+                    left_out |= {"transit", "approach", "lift", "transfer"}
+                self._pick(plan.picks[i], left_out)
         assert self.motion is not None
         return self.motion
 
@@ -46,10 +58,10 @@ class RoundMotion:
 
     def _pass(self, pick: _core.Pick, result: _core.DriveByResult) -> None:
         self._open_to(pick.motions[0].opening, self._part(pick))
-        self.opening = next(m.opening for m in pick.motions if m.attached)
+        self.opening, self.held = next(m.opening for m in pick.motions if m.attached), self._part(pick)
         self._add(RobotMotion.of_drive_by(result, openings=[self.opening]))
 
-    def _pick(self, pick: _core.Pick, left_out: Sequence[str]) -> None:
+    def _pick(self, pick: _core.Pick, left_out: Collection[str]) -> None:
         base = self.plan.stops[pick.stop].pose
         for motion in pick.motions:
             if motion.kind not in left_out:
@@ -59,6 +71,7 @@ class RoundMotion:
     def _open_to(self, opening: float, part: str) -> None:
         """Where the hand stands otherwise; what it stands at when the round begins is listed as well, and takes no time."""
         before, self.opening = self.opening, opening
+        part, self.held = self.held or part, None
         if self.motion is None or before == opening:
             return
         moved = 0.0 if before is None else opening - before

@@ -15,6 +15,7 @@ from ..documents.reading import read_json
 _TRAJOPT = (
     "cpp/src/trajopt", "cpp/include/mmgrasp/trajopt", "cpp/src/task/drive_by", "cpp/include/mmgrasp/task/drive_by.hpp",
     "cpp/src/optim/nlp", "cpp/src/optim/sparse", "python/mmgrasp/reproduce/drive_by.py",
+    "python/mmgrasp/reproduce/nearest_state.py",
 )  # fmt: skip
 _SIM = (*_TRAJOPT, "cpp/src/control", "cpp/src/grasp/push", "python/mmgrasp/sim", "python/mmgrasp/reproduce/physics.py")
 SOURCES: dict[str, tuple[str, ...]] = {

@@ -29,7 +29,9 @@ from .shapes import read_shapes
 from .wheels import limits_of_wheels
 
 BASE_LIMITS = "linear_velocity angular_velocity linear_acceleration angular_acceleration workspace wheel_velocity wheel_separation"
-ROBOT_KEYS = "urdf srdf packages xacro_args mesh_tolerance base base_limits wheels mount frames group tool_link joints home"
+ROBOT_KEYS = (
+    "urdf srdf packages xacro_args mesh_tolerance base base_limits wheels mount frames group tool_link joints home"
+)
 BIN_LINK = "place_bin"
 LONGEST_CROSSING = 600.0  # from end to end of a joint's range [s]
 SLOWEST = 1e-3  # of a base [m/s, rad/s and their rates]: a round that takes days has more samples than memory

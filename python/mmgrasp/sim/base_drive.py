@@ -55,7 +55,7 @@ class JointDrive:
             self.scene.gains(index, 0.0, self.scene.inertia(name) / FOLLOWS_IN)
 
     def command(self, velocity: np.ndarray) -> None:
-        """In the world's axes, as the base is turned now."""
+        """The same velocity goes to the joints in the world's axes, as the base is turned now."""
         self.scene.data.ctrl[self.actuator] = body_to_world(velocity, float(self.pose()[2]))
 
 

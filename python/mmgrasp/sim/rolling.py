@@ -28,7 +28,7 @@ class RollingBase:
     track: float
     """Between the wheels [m]."""
     height: float = 0.0
-    """Of the wheels' lowest points in the root's frame [m]."""
+    """Height of the wheels' lowest points in the root's frame [m]."""
     casters: tuple[tuple[float, float], ...] = ((0.22, 0.0), (-0.22, 0.0))
     """Where they touch the ground, in the root's frame [m]."""
     friction: float = 0.9

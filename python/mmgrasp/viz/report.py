@@ -245,12 +245,20 @@ def _in_passing(plan: dict[str, Any]) -> str:
         pick = plan["picks"][motion["pick"]]
         part = next(p for p in plan["scenario"]["parts"] if p["name"] == pick["part"])
         closing = (motion["opening"] - part["grasps"][pick["grasp"]]["opening"]) / speed
-        arm = sum(m["times"][-1] for m in pick["motions"] if m["kind"] in ("transit", "approach", "lift"))
-        stopping = plan["route"][pick["stop"]]["duration"] + arm + closing
+        kinds = ["transit", "approach", "lift"] + (["transfer"] if motion.get("ends") == "release" else [])
+        stopping = sum(m["times"][-1] for m in pick["motions"] if m["kind"] in kinds) + closing
+        before = plan["picks"][motion["pick"] - 1] if motion.get("begins") == "release" else None
+        if before is not None:
+            stopping += before["motions"][-1]["times"][-1]
+        if before is None or before["stop"] != pick["stop"]:
+            stopping += plan["route"][pick["stop"]]["duration"]
         now = motion["times"][-1]
         cells = [str(pick["stop"] + 1), _tray(plan, pick["tray"]), escape(pick["part"])]
         rows.append([*cells, clock(stopping), clock(now), clock(stopping - now)])
-    note = "The drive to a stop and the first pick there, up to its lift, as one motion of base and arm that does not stop for the part."
+    note = (
+        "Each pick as one motion from where the part before is let go, with the drive to the stop where it is the first one there: base and arm "
+        "do not stop for the part, and the arm does not come home."
+    )
     head = ["stop", "tray", "part", "stop and pick", "in passing", "saved"]
     body = table(head, rows, {0, 3, 4, 5}) if rows else "<p>None was found to be faster.</p>"
     return f"<h2>Parts taken in passing</h2><p class='lead'>{note}</p>" + body

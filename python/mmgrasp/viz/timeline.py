@@ -61,7 +61,8 @@ class Timeline:
                 )
             for i, pick in picks:
                 base = np.asarray(stops[index]["pose"], float)
-                clock = self._add_pick(pick, base, parts, removed, clock, passing.get(i))
+                keeps_retreat = passing.get(i + 1, {}).get("begins") != "release"
+                clock = self._add_pick(pick, base, parts, removed, clock, passing.get(i), keeps_retreat)
                 removed = removed | {pick["part"]}
         self.duration = clock
 
@@ -77,6 +78,7 @@ class Timeline:
         removed: frozenset[str],
         clock: float,
         passing: dict[str, Any] | None,
+        keeps_retreat: bool,
     ) -> float:
         name = pick["part"]
         grasp = parts[name]["grasps"][pick["grasp"]]
@@ -92,7 +94,9 @@ class Timeline:
             clock = self._add(coming)
             clock = self._add(leaving)
             motions = [m for m in motions if m["kind"] in ("transfer", "retreat")]
-        for motion in motions:
+            if passing.get("ends") == "release":
+                clock = self._add_grip("release", name, clock, motions.pop(0), in_hand, removed, base)
+        for motion in motions if keeps_retreat else [m for m in motions if m["kind"] != "retreat"]:
             attached = in_hand if motion["attached"] else None
             binned = removed | {name} if motion["kind"] == "retreat" else removed
             label = f"{motion['kind']} {name}"
@@ -101,11 +105,24 @@ class Timeline:
             clock = self._add(segment)
             if motion["kind"] in ("approach", "transfer"):
                 word = "grasp" if motion["kind"] == "approach" else "release"
-                grip = Segment(f"{word} {name}", clock, GRIP_TIME, "grip", motion, None, removed, base)
-                grip.attached = in_hand if word == "release" else None
-                grip.opening = float(motion["opening"])
-                clock = self._add(grip)
+                held = in_hand if word == "release" else None
+                clock = self._add_grip(word, name, clock, motion, held, removed, base)
         return clock
+
+    def _add_grip(
+        self,
+        word: str,
+        name: str,
+        clock: float,
+        motion: dict[str, Any],
+        attached: tuple[str, np.ndarray] | None,
+        removed: frozenset[str],
+        base: np.ndarray,
+    ) -> float:
+        """The fingers move where a motion ends."""
+        grip = Segment(f"{word} {name}", clock, GRIP_TIME, "grip", motion, attached, removed, base)
+        grip.opening = float(motion["opening"])
+        return self._add(grip)
 
     def segment_at(self, time: float) -> Segment:
         """The segment in which this time lies (clamped to the plan)."""

@@ -172,6 +172,65 @@ TEST(DriveByCheck, ItsEndsMeetThePlan) {
   EXPECT_TRUE(codes_of(plan).count("not-at-rest"));
 }
 
+/// The arm alone, at the stop: from where cube 0 is let go to cube 1 and on to the bin.
+PlanToCheck released_to_released() {
+  PlanToCheck plan = good_plan();
+  const Vector3d up = Vector3d::UnitZ(), grasp = plan.parts[1].body.T_world_body.translation();
+  const Vector3d base = plan.stops[0].pose;
+  CheckedDriveBy passing;
+  passing.pick = 1;
+  passing.from_release = passing.to_release = true;
+  CheckedMotion& m = passing.motion;
+  m.kind = "drive-by";
+  m.opening = plan.parts[1].grasps[0].opening + 0.02;
+  m.times = {0};
+  m.positions = {row(base.x(), motion(plan, 0, kTransfer).positions.back())};
+  m.velocities = {VectorXd::Zero(8)};
+  go_on(m, row(base.x(), over(base, grasp + 0.08 * up)), 2);
+  go_on(m, row(base.x(), over(base, grasp)), 1);
+  passing.close_at = m.times.back();
+  go_on(m, row(base.x(), over(base, grasp)), 0.3);
+  passing.closed_at = m.times.back();
+  go_on(m, row(base.x(), over(base, grasp + 0.12 * up)), 1);
+  go_on(m, row(base.x(), motion(plan, 1, kTransfer).positions.back()), 2);
+  plan.drive_by = {passing};
+  return plan;
+}
+
+TEST(DriveByCheck, FromReleaseToRelease) {
+  const PlanToCheck good = released_to_released();
+  EXPECT_TRUE(check_plan(good, quick()).faults.empty()) << listed(check_plan(good, quick()));
+  PlanToCheck plan = good;
+  plan.drive_by[0].from_release = false;
+  EXPECT_EQ(codes_of(plan), Codes{"drive-by-pick"});
+  plan = good;
+  plan.drive_by[0].to_release = false;  // it would have to end lifted
+  EXPECT_EQ(codes_of(plan), Codes{"discontinuous"});
+  plan = good;
+  plan.drive_by[0].pick = 0;
+  EXPECT_EQ(codes_of(plan), Codes{"drive-by-pick"});
+  plan = good;
+  plan.drive_by[0].motion.positions.front()[4] += 1e-3;
+  EXPECT_TRUE(codes_of(plan).count("discontinuous"));
+  for (const std::size_t end : {std::size_t{0}, good.drive_by[0].motion.times.size() - 1}) {
+    plan = good;
+    plan.drive_by[0].motion.positions[end][0] += 1e-3;
+    EXPECT_TRUE(codes_of(plan).count("route-ends")) << end;
+  }
+}
+
+TEST(DriveByCheck, WhatIsHeldOnTheWayToTheBin) {
+  // Beside the way of pick 1's own motions, which keep to other places.
+  PlanToCheck plan = released_to_released();
+  CheckedMotion& m = plan.drive_by[0].motion;
+  const auto middle =
+      std::upper_bound(m.times.begin(), m.times.end(), plan.drive_by[0].closed_at + 2) - m.times.begin();
+  const VectorXd q = m.positions[middle];
+  // Below the fingers, where only the cube comes.
+  plan.obstacles.push_back(box("post", {0.01, 0.01, 0.01}, at(q[0] + 0.1 + q[4], q[5], 0.9 + q[3] - 0.043)));
+  EXPECT_TRUE(codes_of(plan).count("attached-collision")) << listed(check_plan(plan, quick()));
+}
+
 TEST(DriveByCheck, OnlyTheFirstPickOfAStopAndOnce) {
   for (const int pick : {-1, 1, 3}) {
     PlanToCheck plan = passing_plan();

@@ -46,7 +46,8 @@ struct MMGRASP_EXPORT PlanCheckOptions {
 ///   fingers close on it, or a listed grasp has nothing between the pads), `grasp-opening` (pads at this width would
 ///   stand in the part, or clear of it), `no-lift` (or one that is too low), `release-outside`, `release-tilted`,
 ///   `release-height`;
-/// - a motion in passing, besides those of arm motions: `drive-by-pick` (not the first of its stop, twice, unknown),
+/// - a motion in passing, besides those of arm motions: `drive-by-pick` (from home and not the first of its stop,
+///   from a release that is none, twice, unknown),
 ///   `closing-time` (outside the motion, or faster than the fingers), `base-limit` (velocity or acceleration of base or
 ///   wheels), `base-off-course` (where its velocities do not lead);
 /// - the route: `route-legs` (their number), `route-ends`, `route-not-driveable`, `route-collision`, `too-long`;

@@ -59,13 +59,17 @@ struct MMGRASP_EXPORT CheckedPick {
   std::vector<CheckedMotion> motions;
 };
 
-/// Drive to a stop and the first pick there up to its lift, in one motion of base and arm. The fingers open before it,
-/// and close while the tool keeps its place in the room.
+/// A pick in one motion of base and arm, with the drive to its stop where it is the first one there. The fingers open
+/// before it, and close while the tool keeps its place in the room.
 struct MMGRASP_EXPORT CheckedDriveBy {
   int pick = -1;         ///< Index into the plan's picks.
   double close_at = 0;   ///< The fingers begin to close [s],
   double closed_at = 0;  ///< and from here on hold the part [s].
   CheckedMotion motion;  ///< Rows hold x, y, theta, then the arm's joints; `opening` is that before closing.
+  /// Begins where the pick before lets its part go, in place of that pick's retreat; else at home, and the pick is the
+  /// first of its stop.
+  bool from_release = false;
+  bool to_release = false;  ///< Ends where the part is let go, in place of the pick's transfer; else once it is lifted.
 };
 
 /// A stop: base pose (x, y, theta), the disc in which it may come to stand [m], and the trays it serves.

@@ -14,7 +14,13 @@ RobotMotion drive_by_motion(const DriveByResult& result, const std::vector<doubl
   const std::vector<double>& times = result.trajectory->times();
   double longest = 0;
   for (std::size_t i = 1; i < times.size(); ++i) longest = std::max(longest, times[i] - times[i - 1]);
-  RobotMotion motion = robot_motion(result.trajectory->sampled(static_cast<int>(std::ceil(longest / period)) - 1));
+  std::optional<Eigen::Vector3d> stands;
+  if (const JointGroup& group = result.trajectory->group(); !group.has_base()) {
+    const Pose& T = group.T_world_root();
+    stands = Eigen::Vector3d(T.translation().x(), T.translation().y(), std::atan2(T(1, 0), T(0, 0)));
+  }
+  RobotMotion motion =
+      robot_motion(result.trajectory->sampled(static_cast<int>(std::ceil(longest / period)) - 1), stands);
   for (const DriveByEvent& event : result.events) {
     if (event.object.empty()) continue;
     GripperEvent closing;

@@ -61,6 +61,12 @@ class DriveByCheck {
   static Vector3d base(const VectorXd& q) { return q.head<3>(); }
   static VectorXd arm(const VectorXd& q) { return q.tail(q.size() - 3); }
 
+  /// Where the base stands before the motion: where the pick before was, or where the leg to the stop begins.
+  Vector3d base_before(const CheckedPick& pick) const {
+    if (drive_by_.from_release) return plan_.stops[plan_.picks[drive_by_.pick - 1].stop].pose;
+    return pick.stop == 0 ? plan_.start : plan_.stops[pick.stop - 1].pose;
+  }
+
   void check_ends(const CheckedPick& pick) {
     const VectorXd &first = motion_.positions.front(), &last = motion_.positions.back();
     const std::size_t stop = pick.stop;
@@ -69,16 +75,19 @@ class DriveByCheck {
           (base(q) - wanted).head<2>().norm() <= kMaxStep && std::abs(wrap_angle(q[2] - wanted.z())) <= kMaxStep;
       if (!there) fault("route-ends", std::string(verb) + " at " + text(base(q)) + ", must be " + text(wanted));
     };
-    stands(first, stop == 0 ? plan_.start : plan_.stops[stop - 1].pose, "starts");
+    stands(first, base_before(pick), "starts");
     stands(last, plan_.stops[stop].pose, "ends");
-    if (pick.motions.size() < 4) return;  // said at the pick
+    const CheckedPick& before = drive_by_.from_release ? plan_.picks[drive_by_.pick - 1] : pick;
+    if (pick.motions.size() < 4 || before.motions.size() < 4) return;  // said at the pick
     const auto joins = [this](const VectorXd& q, const CheckedMotion& other, const VectorXd& wanted) {
       if (wanted.size() == q.size() - 3)  // else said at the pick
         check_join(arm(q), wanted, where_, "does not meet '" + other.kind + "'", faults_);
     };
-    const CheckedMotion &transit = pick.motions[0], &transfer = pick.motions[3];
-    if (!transit.positions.empty()) joins(first, transit, transit.positions.front());
-    if (!transfer.positions.empty()) joins(last, transfer, transfer.positions.front());
+    const CheckedMotion &begin = before.motions[drive_by_.from_release ? 3 : 0], &transfer = pick.motions[3];
+    if (!begin.positions.empty())
+      joins(first, begin, drive_by_.from_release ? begin.positions.back() : begin.positions.front());
+    if (!transfer.positions.empty())
+      joins(last, transfer, drive_by_.to_release ? transfer.positions.back() : transfer.positions.front());
     check_rest(motion_.velocities.front(), where_, "start", faults_);
     check_rest(motion_.velocities.back(), where_, "end", faults_);
   }
@@ -125,6 +134,10 @@ class DriveByCheck {
       for (const double s : shares)
         if ((i == 0 || s > 0) && !good_at(segment.at(s), motion_.times[i] + s * segment.duration())) return;
     }
+    if (drive_by_.to_release) {
+      const Pose T_world_released = judge_.tip(arm(motion_.positions.back())) * T_tip_part_;
+      check_release(context_, *part_, judge_.T_world_root(), T_world_released, where_, faults_);
+    }
   }
 
   double steps_of(const HermiteSegment& segment) const {
@@ -142,7 +155,8 @@ class DriveByCheck {
       const Pose T_world_tip = judge_.tip(arm(q));
       // While they close the part stands where it stood; fingers may touch it from now on.
       const std::size_t body = context_.body_of_part(static_cast<int>(part_ - plan_.parts.data()));
-      judge_.hold(body, T_world_tip.inverse() * part_->body.T_world_body);
+      T_tip_part_ = T_world_tip.inverse() * part_->body.T_world_body;
+      judge_.hold(body, T_tip_part_);
       if (!closing_) check_grasp_reached(context_, T_world_grasp_, T_world_tip, where, faults_);
       closing_ = true;
       if (!still_at(T_world_tip, where)) return false;
@@ -175,11 +189,11 @@ class DriveByCheck {
   std::string where_;
   const CheckedPart* part_ = nullptr;
   double width_ = 0;
-  Pose T_world_grasp_ = Pose::Identity();
+  Pose T_world_grasp_ = Pose::Identity(), T_tip_part_ = Pose::Identity();
   bool closing_ = false, held_ = false;
 };
 
-/// Those that name the first pick of a stop, once; faults for the others.
+/// Those that name a pick that can be done so, once; faults for the others.
 std::vector<std::size_t> known_picks(const Context& context, Faults& faults) {
   const PlanToCheck& plan = context.plan;
   std::vector<std::size_t> known;
@@ -196,8 +210,11 @@ std::vector<std::size_t> known_picks(const Context& context, Faults& faults) {
                             p.grasp < static_cast<int>(plan.parts[part].grasps.size());
       if (!resolved) continue;  // said at the pick
       if (!seen.insert(pick).second) wrong = "pick " + std::to_string(pick) + " is done in passing twice";
-      if (pick > 0 && plan.picks[pick - 1].stop == p.stop)
-        wrong = "pick " + std::to_string(pick) + " is not the first of its stop";
+      const int stop_before = pick > 0 ? plan.picks[pick - 1].stop : -1;
+      if (!plan.drive_by[i].from_release && stop_before == p.stop)
+        wrong = "pick " + std::to_string(pick) + " is not the first of its stop, and the motion begins at home";
+      if (plan.drive_by[i].from_release && (stop_before < 0 || stop_before >= static_cast<int>(plan.stops.size())))
+        wrong = "no pick is before pick " + std::to_string(pick);
     }
     if (wrong.empty())
       known.push_back(i);

@@ -8,8 +8,7 @@ namespace mmgrasp::detail {
 namespace {
 
 constexpr double kLeastShare = 1e-5;  // Corners are not cut closer than this share of an edge.
-constexpr double kHidden =
-    3e-4;  // By about so much an edge may cut a corner unseen [rad or m]: a step of the final check.
+constexpr double kHidden = 3e-4;      // A step of the final check, which may hide a cut corner [rad or m].
 constexpr double kLiftProbability = 0.5;
 
 }  // namespace

@@ -21,6 +21,7 @@ from .._core import InvalidInput, JointGroup, Outcome, Pick, World
 from .._files import write_files
 from .._options import DriveByOptions
 from .._progress import Progress
+from ..scenario import Scenario
 from .planning import ScenarioPlan, file_name
 from .round_motion import RoundMotion
 
@@ -161,6 +162,14 @@ class DriveByPlan:
         return [*write_files(Path(folder), texts), *written]
 
 
+def check_in_passing(scenario: Scenario) -> None:
+    """Raises InvalidInput for a round of which no part can be taken in passing."""
+    if scenario.setup.gripper.suction is not None:
+        raise InvalidInput("drive-by: needs a hand with fingers, which close in passing; this one has suction cups")
+    if scenario.setup.place_region.capacity:
+        raise InvalidInput("drive-by: parts are not taken in passing with a place_region.capacity, of several trips")
+
+
 def plan_drive_by_picks(
     plan: ScenarioPlan, *, progress: Progress = None, **options: Unpack[DriveByOptions]
 ) -> DriveByPlan:
@@ -173,6 +182,7 @@ def plan_drive_by_picks(
     problem = plan.scenario.problem()
     if problem.robot.base == "fixed":
         raise InvalidInput("plan: the robot has a fixed base")
+    check_in_passing(plan.scenario)
     out = DriveByPlan(plan, problem)
     removed: set[tuple[int, int]] = set()
     here = np.asarray(problem.start, float)

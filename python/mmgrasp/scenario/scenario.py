@@ -193,6 +193,8 @@ def _read_scenario(
     _check_names(root, obstacles, trays)
     names = [o.name for o in obstacles] + ([FLOOR] if floor is not None else [])
     rules = read_contact_rules(root, setup.robot, names, [p.name for t in trays for p in t.tray.parts])
+    if setup.gripper.suction is not None and any([*rules.padding.get("by_name", {}).values(), *_everywhere(rules)]):
+        root["padding"].fail("must be left out: a hand of suction cups comes within 0.2 mm of its parts")
     _check_apart(root["trays"], trays, obstacles, floor)
     if seed is not None:
         options["seed"] = seed
@@ -216,6 +218,10 @@ def _read_scenario(
     for key in ("start", "goal"):
         _check_stands_free(root[key], scenario)
     return scenario
+
+
+def _everywhere(rules: ContactRules) -> list[float]:
+    return [rules.padding.get(key, 0.0) for key in ("links", "attached", "objects")]
 
 
 def _check_header(root: Node) -> None:

@@ -69,7 +69,7 @@ void MaskImage::check(const char* field) const {
 }
 
 HandMasks make_hand_masks(const Hand& hand, double opening, double angle, double resolution, double margin) {
-  hand.check();
+  hand.check_fingers();
   require(std::isfinite(angle), "angle", angle, "must be finite [rad]");
   require(std::isfinite(resolution) && resolution > 0, "resolution", resolution, "must be positive and finite [m]");
   require(std::isfinite(margin) && margin >= 0, "margin", margin, "must be zero or positive [m]");

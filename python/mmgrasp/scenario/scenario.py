@@ -19,11 +19,12 @@ from ..documents.reading import RENAMED, Node, read_yaml
 from . import cell_bodies, drawn_bodies, floor_map
 from .contact_rules import ContactRules, read_contact_rules
 from .grid_size import check_grid_size
+from .part_type import PartType
 from .robot_section import RobotSetup, choose_sections, find_file, read_setup
 from .scan_section import ScanReader, moved
 from .schema import with_article
 from .shapes import read_shapes
-from .tray_section import PartType, TraySetup, read_part_types, read_tray
+from .tray_section import TraySetup, read_part_types, read_tray
 
 TOP_KEYS = "format version name robot start goal positioning_uncertainty trays"
 TOP_OPTIONAL = (

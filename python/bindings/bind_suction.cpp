@@ -36,7 +36,7 @@ void bind_records(py::module_& m) {
            }),
            py::arg("position"), py::arg("radius"), "Middle of the rim in the tool frame (3,) and its radius [m].")
       .def_readonly("position", &SuctionCup::position, "Middle of the rim in the tool frame (3,) [m].")
-      .def_readonly("radius", &SuctionCup::radius, "Of the rim [m].")
+      .def_readonly("radius", &SuctionCup::radius, "Radius of the rim [m].")
       .def("__repr__", [](const SuctionCup& cup) {
         return "SuctionCup(radius=" + std::string(py::repr(py::float_(cup.radius))) + ")";
       });

@@ -1892,7 +1892,7 @@ class SuctionCup:
     @property
     def radius(self) -> float:
         """
-        Of the rim [m].
+        Radius of the rim [m].
         """
 class Suction:
     """

@@ -24,7 +24,7 @@ struct MMGRASP_EXPORT SampledSuctionGrasps {
   std::vector<Grasp> grasps;
   int unsealed = 0;   ///< Places and turns at which some cup does not seal.
   int too_heavy = 0;  ///< Where all seal, but would not hold the mass in every direction.
-  double least_share = std::numeric_limits<double>::infinity();  ///< Of suction_share_any_way(), where all seal.
+  double least_share = std::numeric_limits<double>::infinity();  ///< Least suction_share_any_way() where all seal.
 };
 
 /// Grasps of a rigid body by suction cups: where every cup seals (seal_gap) and, with a mass [kg] > 0, the part is held

@@ -12,7 +12,7 @@ namespace mmgrasp {
 /// One suction cup of a hand: its rim is a circle in the plane through the tool frame's origin, across the approach.
 struct MMGRASP_EXPORT SuctionCup {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< Middle of the rim in the tool frame [m].
-  double radius = 0.02;                                ///< Of the rim [m]; > 0.
+  double radius = 0.02;                                ///< Radius of the rim [m]; > 0.
 };
 
 /// Suction cups that hold a part together: how far their rims give way, and how hard they pull.

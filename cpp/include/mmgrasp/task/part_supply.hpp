@@ -63,7 +63,7 @@ struct MMGRASP_EXPORT PartSupplyPlan {
   bool proven_minimal = false;
   /// stops.size() + 1 legs, from start to goal; a leg after a stop that was left to unload begins at the goal.
   std::vector<BasePath> route;
-  std::vector<Unloading> unloadings;  ///< In order; one less than trips.
+  std::vector<Unloading> unloadings;  ///< As they are carried out; one less than trips.
   std::vector<Pick> picks;            ///< Picks in the order in which they are carried out.
   /// Share of the base poses drawn at a stop from which all its parts stay graspable: the least of all stops.
   double robustness_rate = 0;

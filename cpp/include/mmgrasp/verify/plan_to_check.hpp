@@ -209,7 +209,7 @@ struct MMGRASP_EXPORT PlanToCheck {
 
   // Motions
   std::vector<std::vector<Eigen::Vector3d>> route;  ///< stops.size() + 1 legs of base poses.
-  std::vector<CheckedUnloading> unloadings;         ///< In order.
+  std::vector<CheckedUnloading> unloadings;         ///< As they are carried out.
   std::vector<CheckedLegValues> leg_values;         ///< One a leg; empty: not given.
   std::vector<CheckedPick> picks;
   std::vector<CheckedDriveBy> drive_by;  ///< What of route and picks is done in passing.

@@ -17,8 +17,8 @@ class CupSeal {
  public:
   /// What one hand pose meets. Distances along the approach from the rims' plane [m]; infinite: nothing.
   struct Contact {
-    double nearest = 0;   ///< Of all points within the rims.
-    double farthest = 0;  ///< Of the points of the rims.
+    double nearest = 0;   ///< The least of all points within the rims.
+    double farthest = 0;  ///< The largest of the points of the rims.
     bool covered = true;  ///< The surface is before every point within the rims, no deeper than the cup's radius.
     std::vector<Eigen::Vector3d> rim;  ///< Points that the rims' rays meet, in the object's frame.
   };

@@ -14,7 +14,7 @@ namespace mmgrasp {
 namespace {
 
 constexpr double kGravity = 9.80665;  // [m/s^2]
-constexpr double kRounding = 1e-9;    // Of a ray's length [m].
+constexpr double kRounding = 1e-9;    // What a ray's length is off by [m].
 constexpr int kDirections = 360;
 constexpr std::size_t kMostCups = 100;
 

@@ -11,7 +11,7 @@ struct SuctionLoad {
   const Suction& suction;
   Eigen::Vector3d approach;        ///< Tool frame.
   double mass;                     ///< [kg]
-  Eigen::Vector3d centre_of_mass;  ///< In the tool frame [m].
+  Eigen::Vector3d centre_of_mass;  ///< Its place in the tool frame [m].
 };
 
 /// Slows a motion that begins and ends at rest until the cups hold the part all along: less is accelerated then, while

@@ -259,7 +259,7 @@ class PickPlanner {
   const ReachDatabase& database_;
   PickScene scene_;
   Pose T_world_object_;
-  Eigen::Vector3d centre_of_mass_ = Eigen::Vector3d::Zero();  ///< Of the object, for cups.
+  Eigen::Vector3d centre_of_mass_ = Eigen::Vector3d::Zero();  ///< The object's, for cups.
   const Monitor& monitor_;
   Pick pick_;
   unsigned seed_;

@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kPi = mmgrasp::detail::kPi;
 constexpr int kDirections = 720;
-constexpr double kPlaces[] = {0.05, 0.35, 0.65, 0.95};  // Of a segment, where the part's acceleration is taken.
-constexpr double kStep = 0.04;                          // Of a segment, for differences.
+constexpr double kPlaces[] = {0.05, 0.35, 0.65, 0.95};  // Shares of a segment where the part's acceleration is taken.
+constexpr double kStep = 0.04;                          // A share of a segment, for differences.
 const Eigen::Vector3d kGravity(0, 0, -9.80665);         // [m/s^2]
 
 struct Weight {

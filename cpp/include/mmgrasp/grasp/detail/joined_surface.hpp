@@ -13,7 +13,8 @@ namespace mmgrasp::detail {
 struct JoinedSurface {
   TriangleMesh mesh;
   bool solid = true;  ///< Every shape is closed.
-  /// Of uniform density: of volume for solids (shapes that overlap count twice there), of area for open surfaces [m].
+  /// Uniform density is taken: of volume for solids (shapes that overlap count twice there), of area for open surfaces
+  /// [m].
   Eigen::Vector3d centre_of_mass = Eigen::Vector3d::Zero();
 };
 

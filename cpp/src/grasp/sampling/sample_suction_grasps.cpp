@@ -9,6 +9,7 @@
 #include "grasp/sampling/spread.hpp"
 #include "grasp/sampling/surface_points.hpp"
 #include "grasp/suction/cup_seal.hpp"
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/limits.hpp"
@@ -106,6 +107,7 @@ class SuctionSampler {
   }
 
   void try_place(const SurfacePoint& place, int turn) {
+    detail::throw_if_interrupted();
     Pose T = over(place, turn);
     Contact contact = seal_.at(T);
     if (contact.rim.size() >= 3) {

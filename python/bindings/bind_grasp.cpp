@@ -5,6 +5,10 @@
 #include "option_bounds.hpp"
 
 namespace mmgrasp::python {
+
+void bind_suction(py::module_& m);
+void bind_suction_grasps(py::module_& m);
+
 namespace {
 
 using namespace py::literals;
@@ -149,7 +153,9 @@ void bind_grasp(py::module_& m) {
   m.def("_grasp_option_bounds", [] { return sampler_options().bounds(); });
   bind_provenance(m);
   bind_record(m);
+  bind_suction(m);
   bind_hand(m);
+  bind_suction_grasps(m);
   m.def(
       "_sample_grasps",
       [](const std::vector<LinkShape>& object, const Hand& gripper, const py::kwargs& options) {

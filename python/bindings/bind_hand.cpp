@@ -83,7 +83,8 @@ void bind_hand(py::module_& m) {
       .def(py::init([](const std::string& tool_link, const ArrayLike& approach, const ArrayLike& closing,
                        double max_opening, double finger_depth, double finger_width, double clearance,
                        std::vector<HandJoint> joints, Names finger_links, const std::string& kind, double min_opening,
-                       std::vector<double> openings, Shares preshape, const std::optional<HandBody>& body) {
+                       std::vector<double> openings, Shares preshape, const std::optional<HandBody>& body,
+                       double payload) {
              Hand hand;
              hand.tool_link = tool_link;
              hand.approach = vector3_argument(approach, "approach");
@@ -99,6 +100,7 @@ void bind_hand(py::module_& m) {
              hand.preshape = std::move(preshape);
              hand.finger_links = std::move(finger_links);
              if (body) hand.body = *body;
+             hand.payload = payload;
              hand.check();
              return hand;
            }),
@@ -107,6 +109,7 @@ void bind_hand(py::module_& m) {
            py::arg("joints") = std::vector<HandJoint>{}, py::arg("finger_links") = Names{},
            py::arg("kind") = to_string(own.kind), py::arg("min_opening") = own.min_opening,
            py::arg("openings") = std::vector<double>{}, py::arg("preshape") = Shares{}, py::arg("body") = py::none(),
+           py::arg("payload") = own.payload,
            "A hand by its numbers, each described at the property of its name; `body` None: fingers of 12 cm before a "
            "palm "
            "of 13 x 6.5 cm.")
@@ -117,6 +120,28 @@ void bind_hand(py::module_& m) {
           "A hand read from a robot that was loaded with its meshes: axes, ends of the joints, openings and body "
           "are measured\nby forward kinematics between the collision shapes of the finger tips. `group` is an "
           "SRDF end effector or group; ''\ntakes every joint below the tool link's body.")
+      .def_static(
+          "of_cups",
+          [](const std::string& tool_link, const ArrayLike& approach, const Suction& suction, const Names& cup_links,
+             double payload) {
+            Hand hand = Hand::of_cups(tool_link, vector3_argument(approach, "approach"), suction, cup_links);
+            hand.payload = payload;
+            hand.check();
+            return hand;
+          },
+          py::arg("tool_link"), py::kw_only(), py::arg("approach"), py::arg("suction"), py::arg("cup_links") = Names{},
+          py::arg("payload") = own.payload,
+          "A hand of suction cups that face along `approach` (3,) of the tool frame; `cup_links` may touch the "
+          "attached "
+          "part.")
+      .def(
+          "with_payload",
+          [](Hand hand, double payload) {
+            hand.payload = payload;
+            hand.check();
+            return hand;
+          },
+          py::arg("payload"), "The same hand with another payload [kg], > 0; inf: none is stated.")
       .def_readonly("tool_link", &Hand::tool_link, "Link whose frame is the tool frame.")
       .def_readonly("approach", &Hand::approach, "Unit axis of the tool frame along which the hand moves in.")
       .def_readonly("closing", &Hand::closing, "Unit axis of the tool frame along which the pads close.")
@@ -132,6 +157,8 @@ void bind_hand(py::module_& m) {
       .def_readonly("preshape", &Hand::preshape, "Groups that the opening does not move, and how far open they stay.")
       .def_readonly("finger_links", &Hand::finger_links, "Links that may touch the attached part.")
       .def_readonly("body", &Hand::body, "Boxes around fingers and palm.")
+      .def_readonly("suction", &Hand::suction, "Cups in place of fingers; None: the hand has fingers.")
+      .def_readonly("payload", &Hand::payload, "Heaviest part that hand and arm may carry [kg].")
       .def_property_readonly("groups", &Hand::groups, "Names of the joint groups.")
       .def("joint_values", py::overload_cast<double>(&Hand::joint_values, py::const_), py::arg("opening"),
            "Joint values at an opening [m].")
@@ -146,6 +173,8 @@ void bind_hand(py::module_& m) {
            "Opening while moving in on a part of this width: with clearance on both sides, at most max_opening [m].")
       .def("shapes", &Hand::shapes, py::arg("opening"), "Left and right finger and palm as boxes in the tool frame.")
       .def("__repr__", [](const Hand& h) {
+        if (h.suction)
+          return "Hand('" + h.tool_link + "', " + std::to_string(h.suction->cups.size()) + " suction cups)";
         return "Hand('" + h.tool_link + "', opens " + std::string(py::repr(py::float_(h.max_opening))) + " m)";
       });
 }

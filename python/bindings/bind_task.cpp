@@ -92,15 +92,20 @@ void bind_problem(py::module_& m) {
       py::arg("section"), "Raises InvalidInput when an option of a scenario's section is out of range.");
   py::class_<Part>(m, "Part", "One part in a tray.")
       .def(py::init([](std::string name, std::vector<LinkShape> shapes, const ArrayLike& T_world_part,
-                       std::vector<Grasp> grasps, bool target, int grasps_too_wide) {
-             return Part{std::move(name), std::move(shapes), pose_argument(T_world_part, "T_world_part"),
-                         target,          std::move(grasps), grasps_too_wide};
+                       std::vector<Grasp> grasps, bool target, int grasps_too_wide, double mass) {
+             return Part{std::move(name),
+                         std::move(shapes),
+                         pose_argument(T_world_part, "T_world_part"),
+                         target,
+                         std::move(grasps),
+                         grasps_too_wide,
+                         mass};
            }),
            py::arg("name"), py::arg("shapes"), py::arg("T_world_part"), py::arg("grasps") = std::vector<Grasp>{},
-           py::kw_only(), py::arg("target") = true, py::arg("grasps_too_wide") = 0,
+           py::kw_only(), py::arg("target") = true, py::arg("grasps_too_wide") = 0, py::arg("mass") = 0.0,
            "`shapes` in the part's frame, `T_world_part` (4, 4), candidate `grasps` best first. A part that is no "
            "`target`\nstays where it is; `grasps_too_wide` says how many candidates were left out because the gripper "
-           "does not open so far.")
+           "does not open so far.\n`mass` [kg]; 0: not known.")
       .def_readonly("name", &Part::name, "Unique over the problem.")
       .def_readonly("shapes", &Part::shapes, "Its body, in the part's frame.")
       .def_property_readonly(
@@ -109,6 +114,7 @@ void bind_problem(py::module_& m) {
       .def_readonly("grasps", &Part::grasps, "Candidates, best first.")
       .def_readonly("grasps_too_wide", &Part::grasps_too_wide,
                     "Candidates left out because the gripper does not open so far.")
+      .def_readonly("mass", &Part::mass, "[kg]; 0: not known.")
       .def("__repr__", [](const Part& p) {
         return "Part('" + p.name + "', " + std::to_string(p.grasps.size()) + " grasps" + (p.target ? ")" : ", stays)");
       });
@@ -134,19 +140,24 @@ void bind_problem(py::module_& m) {
       .def("__repr__",
            [](const Tray& t) { return "Tray('" + t.name + "', " + std::to_string(t.parts.size()) + " parts)"; });
   py::class_<PlaceRegion>(m, "PlaceRegion", "Where picked parts go: a bin fixed to the robot.")
-      .def(py::init([](const ArrayLike& T_base_bin, const ArrayLike& size, double drop_height) {
+      .def(py::init([](const ArrayLike& T_base_bin, const ArrayLike& size, double drop_height, int capacity) {
              return PlaceRegion{pose_argument(T_base_bin, "T_base_bin"), vector2_argument(size, "size"),
-                                finite_argument(drop_height, "drop_height")};
+                                finite_argument(drop_height, "drop_height"), capacity};
            }),
            py::arg("T_base_bin"), py::arg("size"), py::arg("drop_height") = PlaceRegion{}.drop_height,
+           py::arg("capacity") = PlaceRegion{}.capacity,
            "`T_base_bin` (4, 4): middle of the bin's top plane in the robot's root frame, z up; `size` (2,): inner x "
-           "and y\n[m], > 0; `drop_height`: how far above the top plane a part is released [m], >= 0.")
+           "and y\n[m], > 0; `drop_height`: how far above the top plane a part is released [m], >= 0; "
+           "`capacity`: so many parts fill the bin, 0: it takes all.")
       .def_property_readonly(
           "T_base_bin", [](const PlaceRegion& c) { return to_array(c.T_base_bin); },
           "Middle of the bin's top plane in the robot's root frame (4, 4), z up.")
       .def_readonly("size", &PlaceRegion::size, "Inner x and y (2,) [m].")
       .def_readonly("drop_height", &PlaceRegion::drop_height,
-                    "A part is released with its lowest point so far above the bin's top plane [m].");
+                    "A part is released with its lowest point so far above the bin's top plane [m].")
+      .def_readonly(
+          "capacity", &PlaceRegion::capacity,
+          "So many parts fill the bin; then the robot drives to the goal, where it is emptied. 0: it takes all.");
   py::class_<PartSupplyProblem>(m, "PartSupplyProblem",
                                 "Everything the part-supply planner needs: the robot and its hand, the room, the trays "
                                 "with their parts, and where parts\n"
@@ -266,7 +277,7 @@ void bind_picks(py::module_& m) {
       "plan_object_pick",
       [](const JointGroup& arm, const Hand& gripper, const World& world, const std::string& object,
          std::vector<Grasp> grasps, const ReachDatabase& database, const ArrayLike& home, const ArrayLike& base_pose,
-         const OptionalArray& places, const py::kwargs& options) {
+         const OptionalArray& places, double mass, const py::kwargs& options) {
         const Pose T_world_root = pose_from_planar(vector3_argument(base_pose, "base_pose"));
         PickProblem problem{arm.at(T_world_root),
                             gripper,
@@ -275,7 +286,8 @@ void bind_picks(py::module_& m) {
                             std::move(grasps),
                             vector_argument(home, "home", arm.size()),
                             {},
-                            read_options(pick_fields(), options, "plan_object_pick")};
+                            read_options(pick_fields(), options, "plan_object_pick"),
+                            mass};
         if (!places.is_none()) problem.places = poses_argument(py::reinterpret_borrow<ArrayLike>(places), "places");
         problem.check();
         return LongCall(py::none()).run([&](const Monitor& monitor) {
@@ -283,12 +295,13 @@ void bind_picks(py::module_& m) {
         });
       },
       py::arg("arm"), py::arg("gripper"), py::arg("world"), py::arg("object"), py::arg("grasps"), py::kw_only(),
-      py::arg("database"), py::arg("home"), py::arg("base_pose"), py::arg("places") = py::none(),
+      py::arg("database"), py::arg("home"), py::arg("base_pose"), py::arg("places") = py::none(), py::arg("mass") = 0.0,
       ("Picks any object of a world: the first of the grasps with a collision-free configuration, straight approach "
        "and\n"
        "lift, and motions from `home` (m,) and to one of `places`, (k, 4, 4) world poses of the object; without "
        "places\n"
-       "the object stays in the hand. The robot stands at `base_pose` (x, y, theta).\n\n" +
+       "the object stays in the hand. The robot stands at `base_pose` (x, y, theta); hands of suction cups need the "
+       "object's\n`mass` [kg].\n\n" +
        option_help(pick_fields()))
           .c_str());
 }
@@ -321,6 +334,14 @@ class ListedRegions {
 };
 
 void bind_plan_result(py::module_& m) {
+  py::class_<Unloading>(m, "Unloading", "A drive to the goal with a full bin, which is emptied there.")
+      .def_readonly("after_pick", &Unloading::after_pick, "Index of the plan's pick that filled the bin.")
+      .def_readonly("to_goal", &Unloading::to_goal, "From the stop of that pick.")
+      .def_property_readonly(
+          "back",
+          [](const Unloading& u) { return u.back.poses.empty() ? std::optional<BasePath>() : std::optional(u.back); },
+          "To the same stop, where parts are left; None: the next leg of the route begins at the goal.")
+      .def("__repr__", [](const Unloading& u) { return "Unloading(after pick " + std::to_string(u.after_pick) + ")"; });
   py::class_<Obstruction>(m, "Obstruction", "Why there is no plan, and what would help.")
       .def_readonly("tray", &Obstruction::tray, "Name of the tray.")
       .def_readonly("part", &Obstruction::part, "Name of the part that blocks; empty when the whole tray does.")
@@ -380,6 +401,7 @@ void bind_plan_result(py::module_& m) {
       .def_readonly("proven_minimal", &PartSupplyPlan::proven_minimal, "No fewer stops can serve the regions.")
       .def_readonly("route", &PartSupplyPlan::route,
                     "Drives from start over the stops to the goal: one more than stops.")
+      .def_readonly("unloadings", &PartSupplyPlan::unloadings, "Drives to the goal with a full bin, in order.")
       .def_readonly("picks", &PartSupplyPlan::picks, "The picks in the order in which they are done.")
       .def_readonly("robustness_rate", &PartSupplyPlan::robustness_rate,
                     "Least share over the stops of base poses drawn in the disc from which every part can be grasped.")

@@ -1,3 +1,5 @@
+#include <optional>
+
 #include "bindings.hpp"
 #include "mmgrasp/grasp/hand.hpp"
 #include "mmgrasp/verify/path_check.hpp"
@@ -40,11 +42,22 @@ void bind_checked_parts(py::module_& m) {
            py::arg("pose"), py::arg("opening"),
            "`pose` (4, 4): T_object_hand; `opening`: between the pads while holding [m].");
   py::class_<CheckedPart>(m, "CheckedPart", "A part and the grasps that a plan may use.")
-      .def(py::init([](CheckedBody b, std::string tray, bool target, std::vector<CheckedGrasp> grasps) {
-             return CheckedPart{std::move(b), std::move(tray), target, std::move(grasps)};
+      .def(py::init([](CheckedBody b, std::string tray, bool target, std::vector<CheckedGrasp> grasps, double mass) {
+             return CheckedPart{std::move(b), std::move(tray), target, std::move(grasps), mass};
            }),
-           py::arg("body"), py::arg("tray"), py::arg("target"), py::arg("grasps"),
-           "`tray`: name of the tray it lies in; a part that is no `target` stays.");
+           py::arg("body"), py::arg("tray"), py::arg("target"), py::arg("grasps"), py::arg("mass") = 0.0,
+           "`tray`: name of the tray it lies in; a part that is no `target` stays; `mass` [kg], 0: not known.");
+  py::class_<CheckedCup>(m, "CheckedCup", "A suction cup as the plan file describes it.")
+      .def(py::init([](const ArrayLike& position, double radius) {
+             return CheckedCup{vector3_argument(position, "position"), radius};
+           }),
+           py::arg("position"), py::arg("radius"), "Middle of the rim in the tool frame (3,) and its radius [m].");
+  py::class_<CheckedSuction>(m, "CheckedSuction", "Suction cups of a hand as the plan file describes them.")
+      .def(py::init([](std::vector<CheckedCup> cups, double max_gap, double vacuum, double friction, double safety) {
+             return CheckedSuction{std::move(cups), max_gap, vacuum, friction, safety};
+           }),
+           py::arg("cups"), py::kw_only(), py::arg("max_gap"), py::arg("vacuum"), py::arg("friction"),
+           py::arg("safety"), "As Suction has them.");
   py::class_<CheckedFinger>(m, "CheckedFinger", "A finger joint, linear in the opening.")
       .def(py::init([](std::string joint, double closed, double open) {
              return CheckedFinger{std::move(joint), closed, open};
@@ -117,6 +130,24 @@ void bind_checked_parts(py::module_& m) {
            }),
            py::arg("trays"), py::arg("heading"), py::arg("centre"), py::arg("radius"),
            "Names of the trays, heading [rad], centre (2,) and radius of the disc [m].");
+  py::class_<CheckedUnloading>(m, "CheckedUnloading", "A drive to the goal with a full bin, as the plan file has it.")
+      .def(
+          py::init([](int after_pick, const ArrayLike& to_goal, const CheckedLegValues& to_goal_values,
+                      const OptionalArray& back, const std::optional<CheckedLegValues>& back_values) {
+            const auto poses = [](const ArrayLike& rows, const char* name) {
+              std::vector<Eigen::Vector3d> out;
+              for (const Eigen::VectorXd& row : rows_argument(rows, name, 3)) out.emplace_back(row);
+              return out;
+            };
+            CheckedUnloading unloading{after_pick, poses(to_goal, "to_goal"), {}, to_goal_values};
+            if (!back.is_none()) unloading.back = poses(back.cast<ArrayLike>(), "back");
+            if (back_values) unloading.back_values = *back_values;
+            return unloading;
+          }),
+          py::arg("after_pick"), py::arg("to_goal"), py::arg("to_goal_values"), py::arg("back") = py::none(),
+          py::arg("back_values") = py::none(),
+          "Index of the pick that filled the bin; base poses (k, 3) to the goal and, where parts are left at the stop, "
+          "back, and what is\nsaid about both.");
   py::class_<CheckedGrid>(m, "CheckedGrid", "The grid of a plan's regions.")
       .def(py::init([](const ArrayLike& origin, double resolution, int nx, int ny, std::vector<double> headings) {
              return CheckedGrid{vector2_argument(origin, "grid origin"), resolution, nx, ny, std::move(headings)};
@@ -198,9 +229,13 @@ void bind_plan_to_check(py::module_& m) {
       .def_readwrite("regions", &PlanToCheck::regions, "One a tray.")
       .def_readwrite("stops", &PlanToCheck::stops, "The stops in the order in which they are visited.")
       .def_readwrite("route", &PlanToCheck::route, "Legs of base poses (3,), one more than stops.")
+      .def_readwrite("unloadings", &PlanToCheck::unloadings, "Drives to the goal with a full bin, in order.")
+      .def_readwrite("capacity", &PlanToCheck::capacity, "So many parts fill the bin; 0: it takes all.")
       .def_readwrite("picks", &PlanToCheck::picks, "The picks in order.")
       .def_readwrite("drive_by", &PlanToCheck::drive_by, "What of route and picks is done in passing.")
       .def_readwrite("closing_speed", &PlanToCheck::closing_speed, "How fast the opening shrinks [m/s], for drive_by.")
+      .def_readwrite("suction", &PlanToCheck::suction, "What holds parts in place of fingers; no cups: fingers do.")
+      .def_readwrite("payload", &PlanToCheck::payload, "Heaviest part that may be picked [kg].")
       .def_readwrite("lower_bound", &PlanToCheck::lower_bound, "Least number of stops, as the plan says.")
       .def_readwrite("leg_values", &PlanToCheck::leg_values, "One a leg; empty: not given.")
       .def_readwrite("intersections", &PlanToCheck::intersections, "Places that the plan says lie in several regions.")
@@ -320,6 +355,18 @@ void bind_verify(py::module_& top) {
       py::arg("hand"), py::arg("part"), py::arg("grasp"),
       "How far apart [m] pads of the hand's size are when they close on the part at the grasp, where that is not the "
       "grasp's opening, within 3 mm or a tenth of it; None where it is.");
+  m.def(
+      "broken_seal",
+      [](const Hand& hand, const std::vector<LinkShape>& part, const CheckedGrasp& grasp) {
+        require(hand.suction.has_value(), "hand", "fingers", "must be a hand of suction cups");
+        const Suction& own = *hand.suction;
+        CheckedSuction checked{{}, own.max_gap, own.vacuum, own.friction, own.safety};
+        for (const SuctionCup& cup : own.cups) checked.cups.push_back({cup.position, cup.radius});
+        return broken_seal(checked, hand.approach, part, grasp);
+      },
+      py::arg("hand"), py::arg("part"), py::arg("grasp"),
+      "What is wrong with the seal of the hand's suction cups at the grasp, by the rule of check_plan; '' where they "
+      "seal.");
   m.def(
       "check_plan",
       [](const PlanToCheck& plan, const Progress& progress, const py::kwargs& options) {

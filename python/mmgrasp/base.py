@@ -64,6 +64,7 @@ from ._core import (
     PlaceRegion as PlaceRegion,
     PartSupplyProblem as PartSupplyProblem,
     PartSupplyPlan as PartSupplyPlan,
+    Unloading as Unloading,
     PickMotion as PickMotion,
     Pick as Pick,
     plan_pick as plan_pick,

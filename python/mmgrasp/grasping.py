@@ -5,6 +5,8 @@ from ._core import (
     Hand as Hand,
     HandJoint as HandJoint,
     HandBody as HandBody,
+    Suction as Suction,
+    SuctionCup as SuctionCup,
     eigengrasp_hand as eigengrasp_hand,
 )
 
@@ -17,7 +19,13 @@ from ._core import (
 )
 
 # Grasps of known bodies
-from ._core import sample_grasps as sample_grasps
+from ._core import (
+    sample_grasps as sample_grasps,
+    sample_suction_grasps as sample_suction_grasps,
+    SampledSuctionGrasps as SampledSuctionGrasps,
+    seal_gap as seal_gap,
+    suction_share as suction_share,
+)
 
 # Grasps seen in a height map (P1 3.7.2)
 from ._core import (

@@ -5,6 +5,7 @@
 
 from ._core.verify import (
     CheckedBody as CheckedBody,
+    CheckedCup as CheckedCup,
     CheckedDriveBy as CheckedDriveBy,
     CheckedFinger as CheckedFinger,
     CheckedGrasp as CheckedGrasp,
@@ -16,12 +17,15 @@ from ._core.verify import (
     CheckedPick as CheckedPick,
     CheckedRegion as CheckedRegion,
     CheckedStop as CheckedStop,
+    CheckedSuction as CheckedSuction,
     CheckedTray as CheckedTray,
+    CheckedUnloading as CheckedUnloading,
     Fault as Fault,
     PathCheckResult as PathCheckResult,
     PlanCheckResult as PlanCheckResult,
     PlanToCheck as PlanToCheck,
     StopRate as StopRate,
+    broken_seal as broken_seal,
     check_path as check_path,
     check_plan as check_plan,
     overlapping_bodies as overlapping_bodies,

@@ -245,6 +245,13 @@ def sampled_grasps(call: Callable[..., Any]) -> CALL:
     return lambda: call(part, hand, mesh_samples=100_000, approaches=10)
 
 
+def sampled_by_cups() -> CALL:
+    cups = mg.grasping.Suction([mg.grasping.SuctionCup([0.03 * i, 0, 0], 0.01) for i in range(20)])
+    hand = mg.Hand.of_cups("tool", approach=[0, 0, 1], suction=cups)
+    part = [mg.LinkShape(slab(300))]
+    return lambda: mg.grasping.sample_suction_grasps(part, hand, turns=10, surface_samples=100_000)
+
+
 def many_bodies() -> CALL:
     bodies = [
         _core.verify.CheckedBody(str(i), [BOX], mg.pose([0.2 * (i % 60), 0.2 * (i // 60), 0])) for i in range(3000)
@@ -523,6 +530,7 @@ COSTLY: dict[str, Callable[[], CALL]] = {
     "follow_object_path": followed,
     "_sample_grasps": lambda: sampled_grasps(_core._sample_grasps),
     "sample_grasps": lambda: sampled_grasps(mg.grasping.sample_grasps),
+    "sample_suction_grasps": lambda: sampled_by_cups(),
     "cheapest_assignment": assignment,
     "cover_from_intersections": cover,
     "evaluate_graspability": graspability,

@@ -15,6 +15,7 @@ QUICK = ["robust_intersections", "paired_order", "optimised_order", "planar_face
 
 CHEAP = {
     "a value or a record is made of the arguments, in proportion to their size": """
+        Suction SuctionCup
         AssemblyGrasp AssemblyOperation HoldingRequirement KeepOff BaseGrid BaseRegion BaseTracker BeamFrame BeamMaterial BeamMember BeamSection BeamSupport Box
         Capsule Cylinder DepthCamera DepthImage DepthNoise DepthNoise.stereo DepthNoise.structured_light DepthNoise.time_of_flight
         DriveByTask FingerGrip Grasp GridDistanceField Gripper GripperActuator Hand HandBody HandJoint HeightMap IkSeedDatabase
@@ -33,7 +34,7 @@ CHEAP = {
         CapabilityMap.slice World.copy World.shapes_of World.pose_of CollisionChecker.clone BeamFrame.split
         """,
     "a closed form of a few numbers": """
-        held_load operation_load
+        held_load operation_load _suction_used suction_share Hand.of_cups Hand.with_payload
         BaseGrid.centre BasePath.duration BaseTracker.command BaseTracker.reset DepthNoise.sigma Gripper.holds Hand.joint_values
         Hand.opening_at Hand.posture_values Hand.pregrasp_opening Hand.share_open LineGrasp.probability LineGrasp.success
         PinholeCamera.project Pipe.grasp centric_grasps closing_outcome drive_arc flat_contact grasp_holding joint_velocity
@@ -41,7 +42,7 @@ CHEAP = {
         soft_finger_torque wheel_speeds make_base_grid
         """,
     "one configuration, one pose, one time, one place or one body": """
-        verify.width_unlike_opening
+        verify.width_unlike_opening verify.broken_seal seal_gap _centre_of_mass
         CapabilityMap.configuration CapabilityMap.index_at CollisionChecker.contacts CollisionChecker.distance
         CollisionChecker.distances CollisionChecker.first_contact CollisionChecker.is_free CollisionChecker.rejection
         IkObjective.evaluate IkSeedDatabase.add IkSeedDatabase.seeds JointGroup.at JointGroup.fk JointGroup.force_manipulability

@@ -73,7 +73,7 @@ def test_what_does_not_hold_is_named(name: str) -> None:
 @pytest.mark.parametrize("name", ["p3-figure-3.31", "p3-figure-3.34", "p1-table-3.5"])
 def test_statements_on_printed_numbers_follow_from_the_rows(name: str) -> None:
     result = stored(name)
-    held = {what.group(0): check["holds"] for check in result["checks"] if (what := NEAR.fullmatch(check["what"]))}
+    held = {near.group(0): check["holds"] for check in result["checks"] if (near := NEAR.fullmatch(check["what"]))}
     expected = {}
     for what in held:
         match = NEAR.fullmatch(what)

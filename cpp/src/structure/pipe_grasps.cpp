@@ -71,7 +71,7 @@ void PipeGraspOptions::check() const {
 }
 
 PipeGraspOptions pipe_grasp_options(const Hand& hand) {
-  hand.check();
+  hand.check_fingers();
   PipeGraspOptions options;
   options.approach = hand.approach;
   options.closing = hand.closing;

@@ -41,6 +41,10 @@ bool check_structure(const PlanToCheck& plan, const RobotModel& robot, Faults& f
 
 /// Listed grasps that have something between the pads, and used ones of their parts' widths (grasp_opening.cpp).
 void check_grasp_openings(const Context& context, Faults& faults);
+/// Listed grasps of a hand with suction cups seal (cup_seal.cpp).
+void check_seals(const PlanToCheck& plan, Faults& faults);
+/// No target part is heavier than the hand may carry (payload.cpp).
+void check_payload(const PlanToCheck& plan, Faults& faults);
 /// Which part is picked when and where (picks.cpp).
 void check_pick_list(Context& context, Faults& faults);
 /// The five motions of each pick (arm_motions.cpp).

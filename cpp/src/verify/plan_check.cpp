@@ -133,7 +133,12 @@ PlanCheckResult check_plan(const PlanToCheck& plan, const PlanCheckOptions& opti
   for (std::size_t i = 0; i < plan.parts.size(); ++i) context.part_index[plan.parts[i].body.name] = static_cast<int>(i);
   check_scene_at_rest(plan, *context.stage, result.faults);
   check_pick_list(context, result.faults);
-  check_grasp_openings(context, result.faults);
+  check_payload(plan, result.faults);
+  if (plan.suction.cups.empty()) {
+    check_grasp_openings(context, result.faults);
+  } else {
+    check_seals(plan, result.faults);
+  }
   check_stops(context, result);
   check_route(context, result.faults, result.configurations_checked);
   check_arm_motions(context, result.faults, result.configurations_checked);

@@ -60,6 +60,7 @@ struct Structure {
 
   void arm(ArmSetup& setup);
   void gripper(ArmSetup& setup, std::vector<int>& finger_links);
+  void suction();
   void scalars();
   void body(const CheckedBody& body, const std::string& where, std::set<std::string>& names);
   void scene();
@@ -101,7 +102,14 @@ void Structure::arm(ArmSetup& setup) {
 }
 
 void Structure::gripper(ArmSetup& setup, std::vector<int>& finger_links) {
-  need(finite(plan.max_opening) && plan.max_opening > 0, "max_opening", text(plan.max_opening) + ": must be positive");
+  const bool cups = !plan.suction.cups.empty();
+  if (cups) {
+    suction();
+  } else {
+    need(finite(plan.max_opening) && plan.max_opening > 0, "max_opening",
+         text(plan.max_opening) + ": must be positive");
+  }
+  need(plan.payload > 0, "payload", text(plan.payload) + ": must be positive");
   need(finite(plan.clearance) && plan.clearance >= 0, "clearance", text(plan.clearance) + ": must not be negative");
   need(std::abs(plan.approach.norm() - 1) < 1e-6, "approach", "must be a unit vector");
   const std::vector<double>& openings = plan.openings;
@@ -133,10 +141,27 @@ void Structure::gripper(ArmSetup& setup, std::vector<int>& finger_links) {
   }
   for (const std::string& name : plan.finger_links) finger_links.push_back(link(name, "finger_links"));
   const std::size_t different = std::set<std::string>(plan.finger_links.begin(), plan.finger_links.end()).size();
-  if (ok && different < 2) {
-    faults.push_back(
-        {"finger-links", "finger_links", "names " + text(different) + " links: a gripper has at least two"});
+  if (ok && different < (cups ? 1 : 2)) {
+    faults.push_back({"finger-links", "finger_links",
+                      "names " + text(different) + " links: a gripper has at least " + (cups ? "one" : "two")});
   }
+}
+
+/// What holds a part, and that nothing else does.
+void Structure::suction() {
+  const CheckedSuction& own = plan.suction;
+  need(plan.max_opening == 0 && plan.fingers.empty() && plan.openings.empty() && plan.clearance == 0, "suction",
+       "a hand of suction cups has no fingers, and its openings are 0");
+  need(own.max_gap > 0 && own.max_gap <= 0.1 && own.vacuum > 0 && own.vacuum <= 1.1e5 && own.friction > 0 &&
+           own.friction <= 10 && own.safety >= 1 && finite(own.safety),
+       "suction", "max_gap must be in (0, 0.1] m, vacuum in (0, 1.1e5] Pa, friction in (0, 10], safety at least 1");
+  for (const CheckedCup& cup : own.cups) {
+    need(finite(Eigen::VectorXd(cup.position)) && std::abs(cup.position.dot(plan.approach)) <= 1e-6 && cup.radius > 0 &&
+             cup.radius <= 1,
+         "suction", "rims must lie in the plane through the tool frame, across the approach, of radii in (0, 1] m");
+  }
+  for (const CheckedPart& part : plan.parts)
+    need(!part.target || part.mass > 0, "part '" + part.body.name + "'", "has no mass: suction cups hold by force");
 }
 
 void Structure::scalars() {
@@ -152,6 +177,7 @@ void Structure::scalars() {
   need(is_pose(plan.T_base_bin), "place_region", "the bin's pose is not a finite rigid transform");
   need(finite(Eigen::VectorXd(plan.bin_size)) && plan.bin_size.minCoeff() > 0, "place_region",
        "the bin's size must be positive");
+  need(plan.capacity >= 0, "place_region", "capacity must not be negative");
   need(finite(plan.drop_height) && plan.drop_height >= 0, "place_region", "drop_height must not be negative");
   need(plan.closing_speed > 0 && plan.closing_speed <= kMostClosingSpeed, "closing_speed",
        text(plan.closing_speed) + ": must be positive and at most " + text(kMostClosingSpeed) + " m/s");
@@ -187,6 +213,7 @@ void Structure::scene() {
   for (const CheckedPart& part : plan.parts) {
     const std::string where = "part '" + part.body.name + "'";
     body(part.body, "part", names);
+    need(finite(part.mass) && part.mass >= 0, where, text(part.mass) + ": its mass must not be negative");
     need(trays.count(part.tray) > 0, where, "its tray '" + part.tray + "' is unknown");
     for (std::size_t i = 0; i < part.grasps.size(); ++i) {
       const CheckedGrasp& grasp = part.grasps[i];

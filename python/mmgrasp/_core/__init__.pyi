@@ -10,7 +10,7 @@ import numpy.typing
 import os
 import typing
 from . import verify
-__all__: list[str] = ['AssemblyGrasp', 'AssemblyOperation', 'BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'BeamExtreme', 'BeamFrame', 'BeamMaterial', 'BeamMember', 'BeamSection', 'BeamState', 'BeamSupport', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactArea', 'ContactPairProvenance', 'ContactPatch', 'CuboidFit', 'Cylinder', 'DepthCamera', 'DepthImage', 'DepthNoise', 'DerivativeFreeResult', 'DistanceField', 'DistanceResult', 'DrawnSuccess', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'Facet', 'FeasibleGrasp', 'FingerGrip', 'FingerLengthRange', 'FittedCuboid', 'FittedPrimitive', 'FrameRegistration', 'Grasp', 'GraspHolding', 'GraspOptimum', 'GraspRating', 'GraspReport', 'GraspSuccess', 'GraspSynthesis', 'GraspWidth', 'Graspability', 'GridDistanceField', 'Gripper', 'GripperActuator', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'HeldLoad', 'HoldingRequirement', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'IntegrationReport', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'KeepOff', 'LineGrasp', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'ManipulationStats', 'Mesh', 'MeshDistanceField', 'MeshSegment', 'MeshSegmentation', 'MinimalGrippersResult', 'MotionResult', 'MotionStats', 'NextView', 'NlpResult', 'NodeLoad', 'NonlinearProblem', 'ObjectPathEvaluator', 'ObjectPathProblem', 'ObjectPathResult', 'ObjectRegions', 'ObjectSegmentation', 'Obstruction', 'OccupancyMap', 'OccupancyReport', 'OperationLoad', 'OperationOverlap', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'PairwiseWeights', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedMesh', 'PlacedPart', 'PlanGrippersResult', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'ProbabilisticSdf', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotMotion', 'RobotSource', 'ScrewThread', 'SdfHits', 'SearchTree', 'SegmentFate', 'SegmentRequirement', 'SegmentedObject', 'SegmentedPart', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'SupportedFrame', 'SupportingPlane', 'ToolRegion', 'TourResult', 'Tray', 'ViewCandidate', 'Voxels', 'WholeBodyProgram', 'WholeBodyTrajectory', 'World', 'beam_frame', 'cache_folder', 'camera_view_objective', 'centric_grasps', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'copper', 'cover_from_intersections', 'default_grasp_search', 'derivative_free_solver_names', 'drive_arc', 'drive_by_program', 'eigengrasp_hand', 'evaluate_graspability', 'find_package', 'finger_length_range', 'fit_cuboids', 'fit_primitives', 'flat_contact', 'follow_object_path', 'free_gripper', 'grasp_holding', 'grasp_search_names', 'graspability_map', 'hand_masks', 'held_load', 'inscribed_circle', 'jaw_grasps', 'joint_limit_objective', 'joint_velocity', 'line_contact', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimal_grippers', 'minimize_derivative_free', 'next_view', 'nlp_solver_names', 'operation_load', 'operation_overlap', 'optimised_order', 'optimize_grasp', 'paired_order', 'pairwise_weights', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_grippers', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stop_picks', 'plan_stops_exact', 'plan_straight_line', 'planar_facets', 'planner_names', 'platform_velocity', 'population_search_names', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'preferred_grippers', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'rectangular_section', 'register_frame', 'rehearse_operation', 'render_depth', 'resting_poses', 'robust_intersections', 'round_section', 'route_lengths', 'run_policy', 'sample_grasps', 'segment_depth_image', 'segment_grasps', 'segment_mesh', 'segment_objects', 'self_distance_objective', 'shape_diameters', 'share_headings', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'soft_finger_torque', 'solve_nonlinear', 'solve_set_cover', 'synthesize_grasps', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs', 'write_plan']
+__all__: list[str] = ['AssemblyGrasp', 'AssemblyOperation', 'BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'BeamExtreme', 'BeamFrame', 'BeamMaterial', 'BeamMember', 'BeamSection', 'BeamState', 'BeamSupport', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactArea', 'ContactPairProvenance', 'ContactPatch', 'CuboidFit', 'Cylinder', 'DepthCamera', 'DepthImage', 'DepthNoise', 'DerivativeFreeResult', 'DistanceField', 'DistanceResult', 'DrawnSuccess', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'Facet', 'FeasibleGrasp', 'FingerGrip', 'FingerLengthRange', 'FittedCuboid', 'FittedPrimitive', 'FrameRegistration', 'Grasp', 'GraspHolding', 'GraspOptimum', 'GraspRating', 'GraspReport', 'GraspSuccess', 'GraspSynthesis', 'GraspWidth', 'Graspability', 'GridDistanceField', 'Gripper', 'GripperActuator', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'HeldLoad', 'HoldingRequirement', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'IntegrationReport', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'KeepOff', 'LineGrasp', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'ManipulationStats', 'Mesh', 'MeshDistanceField', 'MeshSegment', 'MeshSegmentation', 'MinimalGrippersResult', 'MotionResult', 'MotionStats', 'NextView', 'NlpResult', 'NodeLoad', 'NonlinearProblem', 'ObjectPathEvaluator', 'ObjectPathProblem', 'ObjectPathResult', 'ObjectRegions', 'ObjectSegmentation', 'Obstruction', 'OccupancyMap', 'OccupancyReport', 'OperationLoad', 'OperationOverlap', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'PairwiseWeights', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedMesh', 'PlacedPart', 'PlanGrippersResult', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'ProbabilisticSdf', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotMotion', 'RobotSource', 'SampledSuctionGrasps', 'ScrewThread', 'SdfHits', 'SearchTree', 'SegmentFate', 'SegmentRequirement', 'SegmentedObject', 'SegmentedPart', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'Suction', 'SuctionCup', 'SupportedFrame', 'SupportingPlane', 'ToolRegion', 'TourResult', 'Tray', 'Unloading', 'ViewCandidate', 'Voxels', 'WholeBodyProgram', 'WholeBodyTrajectory', 'World', 'beam_frame', 'cache_folder', 'camera_view_objective', 'centric_grasps', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'copper', 'cover_from_intersections', 'default_grasp_search', 'derivative_free_solver_names', 'drive_arc', 'drive_by_program', 'eigengrasp_hand', 'evaluate_graspability', 'find_package', 'finger_length_range', 'fit_cuboids', 'fit_primitives', 'flat_contact', 'follow_object_path', 'free_gripper', 'grasp_holding', 'grasp_search_names', 'graspability_map', 'hand_masks', 'held_load', 'inscribed_circle', 'jaw_grasps', 'joint_limit_objective', 'joint_velocity', 'line_contact', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimal_grippers', 'minimize_derivative_free', 'next_view', 'nlp_solver_names', 'operation_load', 'operation_overlap', 'optimised_order', 'optimize_grasp', 'paired_order', 'pairwise_weights', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_grippers', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stop_picks', 'plan_stops_exact', 'plan_straight_line', 'planar_facets', 'planner_names', 'platform_velocity', 'population_search_names', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'preferred_grippers', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'rectangular_section', 'register_frame', 'rehearse_operation', 'render_depth', 'resting_poses', 'robust_intersections', 'round_section', 'route_lengths', 'run_policy', 'sample_grasps', 'sample_suction_grasps', 'seal_gap', 'segment_depth_image', 'segment_grasps', 'segment_mesh', 'segment_objects', 'self_distance_objective', 'shape_diameters', 'share_headings', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'soft_finger_torque', 'solve_nonlinear', 'solve_set_cover', 'suction_share', 'synthesize_grasps', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs', 'write_plan']
 class Error(Exception):
     """
     Base of all errors of mmgrasp.
@@ -1874,6 +1874,66 @@ class Grasp:
         """
         What the quality is the product of, by name: (value, weight) of the factor 1 - weight + weight * value.
         """
+class SuctionCup:
+    """
+    One suction cup of a hand: its rim is a circle in the plane through the tool frame's origin, across the approach.
+    """
+    def __init__(self, position: numpy.typing.ArrayLike, radius: float) -> None:
+        """
+        Middle of the rim in the tool frame (3,) and its radius [m].
+        """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def position(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Middle of the rim in the tool frame (3,) [m].
+        """
+    @property
+    def radius(self) -> float:
+        """
+        Radius of the rim [m].
+        """
+class Suction:
+    """
+    Suction cups that hold a part together: how far their rims give way, and how hard they pull.
+    """
+    def __init__(self, cups: collections.abc.Sequence[SuctionCup], *, max_gap: float = 0.0015, vacuum: float = 60000.0, friction: float = 0.5, safety: float = 2.0) -> None:
+        """
+        See the properties of the same names.
+        """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def cups(self) -> list[SuctionCup]:
+        """
+        At least one.
+        """
+    @property
+    def force(self) -> float:
+        """
+        What all cups pull with: vacuum times area [N].
+        """
+    @property
+    def friction(self) -> float:
+        """
+        Coulomb coefficient of rim and part.
+        """
+    @property
+    def max_gap(self) -> float:
+        """
+        A cup seals where the part's surface falls back from its rim's plane by no more than this [m].
+        """
+    @property
+    def safety(self) -> float:
+        """
+        The force is so many times what holding needs.
+        """
+    @property
+    def vacuum(self) -> float:
+        """
+        Below the pressure of the air [Pa].
+        """
 class HandJoint:
     """
     A driven joint of a hand: how far it goes between closed and open [rad] or [m]. Joints of one group move together.
@@ -1947,7 +2007,12 @@ class Hand:
         by forward kinematics between the collision shapes of the finger tips. `group` is an SRDF end effector or group; ''
         takes every joint below the tool link's body.
         """
-    def __init__(self, tool_link: str, *, approach: numpy.typing.ArrayLike, closing: numpy.typing.ArrayLike, max_opening: float, finger_depth: float, finger_width: float, clearance: float = 0.01, joints: collections.abc.Sequence[HandJoint] = [], finger_links: collections.abc.Sequence[str] = [], kind: str = 'parallel', min_opening: float = 0.0, openings: collections.abc.Sequence[float] = [], preshape: collections.abc.Mapping[str, float] = {}, body: HandBody | None = None) -> None:
+    @staticmethod
+    def of_cups(tool_link: str, *, approach: numpy.typing.ArrayLike, suction: Suction, cup_links: collections.abc.Sequence[str] = [], payload: float = ...) -> Hand:
+        """
+        A hand of suction cups that face along `approach` (3,) of the tool frame; `cup_links` may touch the attached part.
+        """
+    def __init__(self, tool_link: str, *, approach: numpy.typing.ArrayLike, closing: numpy.typing.ArrayLike, max_opening: float, finger_depth: float, finger_width: float, clearance: float = 0.01, joints: collections.abc.Sequence[HandJoint] = [], finger_links: collections.abc.Sequence[str] = [], kind: str = 'parallel', min_opening: float = 0.0, openings: collections.abc.Sequence[float] = [], preshape: collections.abc.Mapping[str, float] = {}, body: HandBody | None = None, payload: float = ...) -> None:
         """
         A hand by its numbers, each described at the property of its name; `body` None: fingers of 12 cm before a palm of 13 x 6.5 cm.
         """
@@ -1982,6 +2047,10 @@ class Hand:
     def share_open(self, opening: float) -> float:
         """
         How far open the fingers are at an opening, in [0, 1].
+        """
+    def with_payload(self, payload: float) -> Hand:
+        """
+        The same hand with another payload [kg], > 0; inf: none is stated.
         """
     @property
     def approach(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -2049,14 +2118,50 @@ class Hand:
         Openings at equal steps of the joints [m]; empty: linear in them.
         """
     @property
+    def payload(self) -> float:
+        """
+        Heaviest part that hand and arm may carry [kg].
+        """
+    @property
     def preshape(self) -> dict[str, float]:
         """
         Groups that the opening does not move, and how far open they stay.
         """
     @property
+    def suction(self) -> Suction | None:
+        """
+        Cups in place of fingers; None: the hand has fingers.
+        """
+    @property
     def tool_link(self) -> str:
         """
         Link whose frame is the tool frame.
+        """
+class SampledSuctionGrasps:
+    """
+    What sample_suction_grasps found, and what it left out.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def grasps(self) -> list[Grasp]:
+        """
+        Best first.
+        """
+    @property
+    def least_share(self) -> float:
+        """
+        Least share of the cups' force that holds the mass in every direction, where all seal; inf: nowhere.
+        """
+    @property
+    def too_heavy(self) -> int:
+        """
+        Where all seal, but would not hold the mass in every direction.
+        """
+    @property
+    def unsealed(self) -> int:
+        """
+        Places and turns at which some cup does not seal.
         """
 class ToolRegion:
     """
@@ -2842,10 +2947,11 @@ class Part:
     """
     One part in a tray.
     """
-    def __init__(self, name: str, shapes: collections.abc.Sequence[LinkShape], T_world_part: numpy.typing.ArrayLike, grasps: collections.abc.Sequence[Grasp] = [], *, target: bool = True, grasps_too_wide: int = 0) -> None:
+    def __init__(self, name: str, shapes: collections.abc.Sequence[LinkShape], T_world_part: numpy.typing.ArrayLike, grasps: collections.abc.Sequence[Grasp] = [], *, target: bool = True, grasps_too_wide: int = 0, mass: float = 0.0) -> None:
         """
         `shapes` in the part's frame, `T_world_part` (4, 4), candidate `grasps` best first. A part that is no `target`
         stays where it is; `grasps_too_wide` says how many candidates were left out because the gripper does not open so far.
+        `mass` [kg]; 0: not known.
         """
     def __repr__(self) -> str:
         ...
@@ -2863,6 +2969,11 @@ class Part:
     def grasps_too_wide(self) -> int:
         """
         Candidates left out because the gripper does not open so far.
+        """
+    @property
+    def mass(self) -> float:
+        """
+        [kg]; 0: not known.
         """
     @property
     def name(self) -> str:
@@ -2919,15 +3030,20 @@ class PlaceRegion:
     """
     Where picked parts go: a bin fixed to the robot.
     """
-    def __init__(self, T_base_bin: numpy.typing.ArrayLike, size: numpy.typing.ArrayLike, drop_height: float = 0.03) -> None:
+    def __init__(self, T_base_bin: numpy.typing.ArrayLike, size: numpy.typing.ArrayLike, drop_height: float = 0.03, capacity: int = 0) -> None:
         """
         `T_base_bin` (4, 4): middle of the bin's top plane in the robot's root frame, z up; `size` (2,): inner x and y
-        [m], > 0; `drop_height`: how far above the top plane a part is released [m], >= 0.
+        [m], > 0; `drop_height`: how far above the top plane a part is released [m], >= 0; `capacity`: so many parts fill the bin, 0: it takes all.
         """
     @property
     def T_base_bin(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         Middle of the bin's top plane in the robot's root frame (4, 4), z up.
+        """
+    @property
+    def capacity(self) -> int:
+        """
+        So many parts fill the bin; then the robot drives to the goal, where it is emptied. 0: it takes all.
         """
     @property
     def drop_height(self) -> float:
@@ -3540,6 +3656,27 @@ class Pick:
         """
         Index of the tray.
         """
+class Unloading:
+    """
+    A drive to the goal with a full bin, which is emptied there.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def after_pick(self) -> int:
+        """
+        Index of the plan's pick that filled the bin.
+        """
+    @property
+    def back(self) -> BasePath | None:
+        """
+        To the same stop, where parts are left; None: the next leg of the route begins at the goal.
+        """
+    @property
+    def to_goal(self) -> BasePath:
+        """
+        From the stop of that pick.
+        """
 class Obstruction:
     """
     Why there is no plan, and what would help.
@@ -3670,6 +3807,11 @@ class PartSupplyPlan:
     def timings(self) -> list[tuple[str, float]]:
         """
         Seconds of each stage, by name.
+        """
+    @property
+    def unloadings(self) -> list[Unloading]:
+        """
+        Drives to the goal with a full bin, in order.
         """
 class DriveByTask:
     """
@@ -6797,6 +6939,8 @@ def _capability_option_table() -> dict[str, typing.Any]:
     ...
 def _cartesian_option_table() -> dict[str, typing.Any]:
     ...
+def _centre_of_mass(object: collections.abc.Sequence[LinkShape]) -> numpy.typing.NDArray[numpy.float64]:
+    ...
 def _check_arrival_covariance(covariance: numpy.typing.ArrayLike) -> None:
     """
     Raises InvalidInput when this is no covariance (3, 3) of x, y and theta.
@@ -6877,6 +7021,12 @@ def _sdf_option_table() -> dict[str, typing.Any]:
 def _segmentation_option_table() -> dict[str, typing.Any]:
     ...
 def _shape_diameter_option_table() -> dict[str, typing.Any]:
+    ...
+def _suction_option_bounds() -> dict[str, typing.Any]:
+    ...
+def _suction_option_table() -> dict[str, typing.Any]:
+    ...
+def _suction_used() -> float:
     ...
 def _supply_option_bounds() -> dict[str, typing.Any]:
     ...
@@ -7424,11 +7574,12 @@ def plan_motion(robot: Robot | CollisionChecker, group: JointGroup | None = None
         region_samples: int = 16  # tool poses drawn in each region
         seed: int = 1  # same seed, same path
     """
-def plan_object_pick(arm: JointGroup, gripper: Hand, world: World, object: str, grasps: collections.abc.Sequence[Grasp], *, database: ReachDatabase, home: numpy.typing.ArrayLike, base_pose: numpy.typing.ArrayLike, places: numpy.typing.ArrayLike | None = None, approach_distance: float = 0.08, lift_height: float = 0.12, motion_time_limit: float = 5.0, ik_seeds: int = 8, seed: int = 1) -> Pick:
+def plan_object_pick(arm: JointGroup, gripper: Hand, world: World, object: str, grasps: collections.abc.Sequence[Grasp], *, database: ReachDatabase, home: numpy.typing.ArrayLike, base_pose: numpy.typing.ArrayLike, places: numpy.typing.ArrayLike | None = None, mass: float = 0.0, approach_distance: float = 0.08, lift_height: float = 0.12, motion_time_limit: float = 5.0, ik_seeds: int = 8, seed: int = 1) -> Pick:
     """
     Picks any object of a world: the first of the grasps with a collision-free configuration, straight approach and
     lift, and motions from `home` (m,) and to one of `places`, (k, 4, 4) world poses of the object; without places
-    the object stays in the hand. The robot stands at `base_pose` (x, y, theta).
+    the object stays in the hand. The robot stands at `base_pose` (x, y, theta); hands of suction cups need the object's
+    `mass` [kg].
     
     
     
@@ -7646,6 +7797,23 @@ def sample_grasps(object: collections.abc.Sequence[LinkShape], gripper: Hand, *,
         standoff: float = 0.0  # how far the tool frame stays outside the object's middle [m]
         seed: int = 1  # same seed, same grasps
     """
+def sample_suction_grasps(object: collections.abc.Sequence[LinkShape], hand: Hand, mass: float = 0.0, *, turns: int = 8, surface_samples: int = 300, max_grasps: int = 96, seed: int = 1) -> SampledSuctionGrasps:
+    """
+    Grasps of a body given as a list of LinkShape by a hand's suction cups: where every cup seals and, with a `mass` [kg] above 0,
+    the part is held at rest however the hand is turned; best first.
+    
+    Keyword options:
+        turns: int = 8  # turns of the hand about its approach at each place
+        surface_samples: int = 300  # places drawn on the surface
+        max_grasps: int = 96  # best kept, spread over approach directions and turns
+        seed: int = 1  # same seed, same grasps
+    """
+def seal_gap(object: collections.abc.Sequence[LinkShape], T_object_hand: numpy.typing.ArrayLike, approach: numpy.typing.ArrayLike, suction: Suction) -> float:
+    """
+    How far [m] a body's surface falls back from the planes of the cups' rims at most, with the hand at T_object_hand (4, 4) and
+    the cups facing along `approach` (3,); inf where a rim or what it encloses reaches beside the body or over a hole, negative
+    where the body reaches through a rim's plane.
+    """
 def segment_depth_image(image: DepthImage, *, plane: SupportingPlane | None = None, up: numpy.typing.ArrayLike | None = None, leaf: float = 0.004, plane_tolerance: float = 0.007, up_angle: float = 0.35, min_plane_share: float = 0.15, max_height: float = 0.5, max_beside: float = 0.05, patch: float = 0.02, concavity: float = 0.45, min_points: int = 100, plane_iterations: int = 1000) -> ObjectSegmentation:
     """
     segment_objects for what one camera sees: labels are one a pixel, row by row, plane and bounds in the world.
@@ -7813,6 +7981,11 @@ def solve_nonlinear(problem: NonlinearProblem, guess: numpy.typing.ArrayLike, *,
 def solve_set_cover(elements: int, sets: collections.abc.Sequence[collections.abc.Sequence[int]], costs: numpy.typing.ArrayLike = (), *, time_limit: float = 60.0, progress: collections.abc.Callable[[str, float], typing.Any] | None = None) -> SetCoverResult:
     """
     Fewest (or cheapest) sets that cover all of 0..elements-1, with a proof (P1, equation 3.1).
+    """
+def suction_share(suction: Suction, approach: numpy.typing.ArrayLike, mass: float, centre_of_mass: numpy.typing.ArrayLike, pull: numpy.typing.ArrayLike | None = None) -> float:
+    """
+    Share of the cups' force that holding a part takes, safety included: above 1 it comes off. `mass` [kg], `centre_of_mass` (3,)
+    and `approach` (3,) in the tool frame; `pull` (3,): gravity less acceleration there [m/s^2], None: at rest, however the hand is turned.
     """
 def synthesize_grasps(map: ProbabilisticSdf, hand: Hand, *, table: float | None = None, object: numpy.typing.ArrayLike | None = None, robot: Robot | None = None, arm: JointGroup | None = None, world: World | None = None, arm_seed: numpy.typing.ArrayLike | None = None, surface_draws: int = 0, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, samples: int = 200, refined: int = 8, shift: float = 0.012, max_tilt: float = 1.05, table_tolerance: float = 0.004, sigmas: float = 2.0, margin: float = 0.002, approach_distance: float = 0.05, min_distance: float = 0.01, max_grasps: int = 20, threads: int = 0, seed: int = 1, friction: float = 0.5, angle_weight: float = 0.6, placement_weight: float = 0.1, centring_weight: float = 0.2, certainty_weight: float = 0.1, placement_scale: float = 0.01, max_sigma: float = 0.005, rays: int = 5, min_hits: float = 0.5, min_inliers: float = 0.8, plane_tolerance: float = 0.002, correlation_length: float = 0.02) -> GraspSynthesis:
     """

@@ -7,7 +7,7 @@ import mmgrasp._core
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['CheckedBody', 'CheckedDriveBy', 'CheckedFinger', 'CheckedGrasp', 'CheckedGrid', 'CheckedIntersection', 'CheckedLegValues', 'CheckedMotion', 'CheckedPart', 'CheckedPick', 'CheckedRegion', 'CheckedStop', 'CheckedTray', 'Fault', 'PathCheckResult', 'PlanCheckResult', 'PlanToCheck', 'StopRate', 'check_path', 'check_plan', 'overlapping_bodies', 'width_unlike_opening']
+__all__: list[str] = ['CheckedBody', 'CheckedCup', 'CheckedDriveBy', 'CheckedFinger', 'CheckedGrasp', 'CheckedGrid', 'CheckedIntersection', 'CheckedLegValues', 'CheckedMotion', 'CheckedPart', 'CheckedPick', 'CheckedRegion', 'CheckedStop', 'CheckedSuction', 'CheckedTray', 'CheckedUnloading', 'Fault', 'PathCheckResult', 'PlanCheckResult', 'PlanToCheck', 'StopRate', 'broken_seal', 'check_path', 'check_plan', 'overlapping_bodies', 'width_unlike_opening']
 class CheckedBody:
     """
     A body of the scene as the plan file describes it.
@@ -28,9 +28,25 @@ class CheckedPart:
     """
     A part and the grasps that a plan may use.
     """
-    def __init__(self, body: CheckedBody, tray: str, target: bool, grasps: collections.abc.Sequence[CheckedGrasp]) -> None:
+    def __init__(self, body: CheckedBody, tray: str, target: bool, grasps: collections.abc.Sequence[CheckedGrasp], mass: float = 0.0) -> None:
         """
-        `tray`: name of the tray it lies in; a part that is no `target` stays.
+        `tray`: name of the tray it lies in; a part that is no `target` stays; `mass` [kg], 0: not known.
+        """
+class CheckedCup:
+    """
+    A suction cup as the plan file describes it.
+    """
+    def __init__(self, position: numpy.typing.ArrayLike, radius: float) -> None:
+        """
+        Middle of the rim in the tool frame (3,) and its radius [m].
+        """
+class CheckedSuction:
+    """
+    Suction cups of a hand as the plan file describes them.
+    """
+    def __init__(self, cups: collections.abc.Sequence[CheckedCup], *, max_gap: float, vacuum: float, friction: float, safety: float) -> None:
+        """
+        As Suction has them.
         """
 class CheckedFinger:
     """
@@ -99,6 +115,15 @@ class CheckedIntersection:
     def __init__(self, trays: collections.abc.Sequence[str], heading: float, centre: numpy.typing.ArrayLike, radius: float) -> None:
         """
         Names of the trays, heading [rad], centre (2,) and radius of the disc [m].
+        """
+class CheckedUnloading:
+    """
+    A drive to the goal with a full bin, as the plan file has it.
+    """
+    def __init__(self, after_pick: int, to_goal: numpy.typing.ArrayLike, to_goal_values: CheckedLegValues, back: numpy.typing.ArrayLike | None = None, back_values: CheckedLegValues | None = None) -> None:
+        """
+        Index of the pick that filled the bin; base poses (k, 3) to the goal and, where parts are left at the stop, back, and what is
+        said about both.
         """
 class CheckedGrid:
     """
@@ -192,6 +217,14 @@ class PlanToCheck:
         """
     @bin_size.setter
     def bin_size(self, arg0: numpy.typing.ArrayLike) -> None:
+        ...
+    @property
+    def capacity(self) -> int:
+        """
+        So many parts fill the bin; 0: it takes all.
+        """
+    @capacity.setter
+    def capacity(self, arg0: int) -> None:
         ...
     @property
     def clearance(self) -> float:
@@ -379,6 +412,14 @@ class PlanToCheck:
     def parts(self, arg0: collections.abc.Sequence[CheckedPart]) -> None:
         ...
     @property
+    def payload(self) -> float:
+        """
+        Heaviest part that may be picked [kg].
+        """
+    @payload.setter
+    def payload(self, arg0: float) -> None:
+        ...
+    @property
     def picks(self) -> list[CheckedPick]:
         """
         The picks in order.
@@ -459,6 +500,14 @@ class PlanToCheck:
     def stops(self, arg0: collections.abc.Sequence[CheckedStop]) -> None:
         ...
     @property
+    def suction(self) -> CheckedSuction:
+        """
+        What holds parts in place of fingers; no cups: fingers do.
+        """
+    @suction.setter
+    def suction(self, arg0: CheckedSuction) -> None:
+        ...
+    @property
     def tip_link(self) -> str:
         """
         Link of the tool centre point.
@@ -473,6 +522,14 @@ class PlanToCheck:
         """
     @trays.setter
     def trays(self, arg0: collections.abc.Sequence[str]) -> None:
+        ...
+    @property
+    def unloadings(self) -> list[CheckedUnloading]:
+        """
+        Drives to the goal with a full bin, in order.
+        """
+    @unloadings.setter
+    def unloadings(self, arg0: collections.abc.Sequence[CheckedUnloading]) -> None:
         ...
     @property
     def velocity_limits(self) -> list[float]:
@@ -611,6 +668,10 @@ class PlanCheckResult:
         """
         The search for shared regions ended at its limit, which lower_bound allows for.
         """
+def broken_seal(hand: mmgrasp._core.Hand, part: collections.abc.Sequence[mmgrasp._core.LinkShape], grasp: CheckedGrasp) -> str:
+    """
+    What is wrong with the seal of the hand's suction cups at the grasp, by the rule of check_plan; '' where they seal.
+    """
 def check_path(robot: mmgrasp._core.Robot, joints: collections.abc.Sequence[str], path: numpy.typing.ArrayLike, bodies: collections.abc.Sequence[CheckedBody], *, other_joints: collections.abc.Mapping[str, float] = {}, allowed_collisions: collections.abc.Sequence[tuple[str, str]] = [], joint_step: float = 0.005) -> PathCheckResult:
     """
     Looks at waypoints (k, n) joined by straight lines, in steps of joint_step [rad or m]: limits, self-collisions and

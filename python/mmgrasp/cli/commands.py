@@ -30,6 +30,7 @@ from ..part_supply import (
     read_plan,
     verify_plan,
 )
+from ..part_supply.drive_by import check_in_passing
 from ..part_supply.plan_file import check_names
 from ..scenario import load_scenario
 from .arguments import build_parser
@@ -58,6 +59,8 @@ def run_plan(arguments: argparse.Namespace, console: Console) -> int:
         scenario = load_scenario(
             arguments.scenario, robot=arguments.robot, seed=arguments.seed, threads=arguments.threads, progress=report
         )
+        if arguments.drive_by:
+            check_in_passing(scenario)
         plan = plan_part_supply(scenario, progress=report)
         page = write_outputs(plan, folder, report, pictures=not arguments.no_pictures)
         passing = None

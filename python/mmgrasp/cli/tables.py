@@ -44,10 +44,15 @@ def summary(plan: ScenarioPlan) -> Table:
             str(len(picks)),
             f"{sum(p.duration for p in picks):.1f}",
         )
-    length = sum(leg.length for leg in plan.route)
-    seconds = sum(leg.duration(plan.scenario.setup.robot) for leg in plan.route)
+    drives = [*plan.route, *(leg for u in plan.plan.unloadings for leg in (u.to_goal, u.back) if leg is not None)]
+    length = sum(leg.length for leg in drives)
+    seconds = sum(leg.duration(plan.scenario.setup.robot) for leg in drives)
     planning = sum(seconds for _, seconds in plan.timings)
     table.caption = f"drive {length:.2f} m in {seconds:.1f} s, planned in {planning:.1f} s{_probabilities(plan)}"
+    if plan.plan.unloadings:
+        table.caption += (
+            f"\n{len(plan.plan.unloadings) + 1} trips: the bin takes {plan.scenario.setup.place_region.capacity} parts"
+        )
     table.caption += f"\nno fewer stops {premises_text(plan.premises)}" if plan.plan.proven_minimal else ""
     return table
 

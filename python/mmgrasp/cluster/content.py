@@ -85,6 +85,10 @@ def problem_digest(problem: PartSupplyProblem, database: ReachDatabase) -> str:
     hasher.add([gripper.max_opening, gripper.finger_depth, gripper.finger_width, gripper.clearance])
     hasher.add([[j.name, j.closed, j.open, j.group] for j in gripper.joints])
     hasher.add([gripper.min_opening, list(gripper.openings)]).add(dict(gripper.preshape))
+    if gripper.suction is not None:
+        own = gripper.suction
+        hasher.add([[cup.position, cup.radius] for cup in own.cups])
+        hasher.add([own.max_gap, own.vacuum, own.friction, own.safety])
     hasher.add({key: value for key, value in problem.options.items() if key != "threads"})
     for name in sorted(problem.world.objects):
         hasher.add(name).add(problem.world.pose_of(name))

@@ -65,9 +65,9 @@ def read_ply_points(path: Path) -> np.ndarray:
         raise fail("must have a format, and an element vertex with the properties x, y and z, each once")
     body = data[data.find(b"\n", end) + 1 :]
     if order == "":
-        words = body.split(None, count * len(names))[: count * len(names)]
+        values = body.split(None, count * len(names))[: count * len(names)]
         try:
-            rows = np.array([float(word) for word in words]).reshape(-1, len(names))
+            rows = np.array([float(word) for word in values]).reshape(-1, len(names))
         except ValueError:
             raise fail("must hold numbers, one for each property of each vertex") from None
         points = rows[:, [names.index(axis) for axis in "xyz"]]

@@ -112,6 +112,7 @@ def _only(setup: TraySetup, names: Collection[str]) -> TraySetup:
             *(part.name, part.shapes, part.T_world_part, part.grasps),
             target=part.name in names and part.name in candidates,
             grasps_too_wide=part.grasps_too_wide,
+            mass=part.mass,
         )
         for part in tray.parts
     ]

@@ -13,6 +13,7 @@ from .._core import verify as checks
 from ..scenario.robot_section import BIN_LINK
 from ..scenario.shapes import shape_to_dict
 from ..scenario.tray_body import TrayBody
+from .drives import all_drives
 from .premises import premises
 
 Plan = dict[str, Any]
@@ -219,7 +220,7 @@ def _counts(plan: Plan) -> Found:
 
 
 def _route(plan: Plan) -> Found:
-    for i, leg in enumerate(plan["route"]):
+    for i, leg in enumerate(all_drives(plan)):
         poses = leg["poses"]
         # exactly: planned routes turn by less than a micro-radian where two headings nearly agree
         if len(poses) > 2 and any(a == b for a, b in pairwise(poses)):

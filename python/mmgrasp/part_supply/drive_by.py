@@ -23,6 +23,7 @@ from .._core import InvalidInput, Outcome, Pick
 from .._files import write_files
 from .._options import DriveByOptions
 from .._progress import Progress
+from ..scenario import Scenario
 from .known_motion import KnownPick
 from .planning import ScenarioPlan, file_name
 from .round_motion import InPassing, RoundMotion
@@ -191,6 +192,14 @@ class DriveByPlan:
         return [*write_files(Path(folder), texts), *written]
 
 
+def check_in_passing(scenario: Scenario) -> None:
+    """Raises InvalidInput for a round of which no part can be taken in passing."""
+    if scenario.setup.gripper.suction is not None:
+        raise InvalidInput("drive-by: needs a hand with fingers, which close in passing; this one has suction cups")
+    if scenario.setup.place_region.capacity:
+        raise InvalidInput("drive-by: parts are not taken in passing with a place_region.capacity, of several trips")
+
+
 @checked
 def plan_drive_by_picks(
     plan: ScenarioPlan, *, progress: Progress = None, **options: Unpack[DriveByOptions]
@@ -205,6 +214,7 @@ def plan_drive_by_picks(
     problem = plan.scenario.problem()
     if problem.robot.base == "fixed":
         raise InvalidInput("plan: the robot has a fixed base")
+    check_in_passing(plan.scenario)
     out = DriveByPlan(plan, problem)
     for index in range(len(plan.picks)):
         out.picks.append(_in_passing(KnownPick(plan, problem, index), progress, options))

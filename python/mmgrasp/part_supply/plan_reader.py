@@ -68,7 +68,7 @@ def _read_arm(plan: checks.PlanToCheck, scenario: Node) -> None:
     plan.acceleration_limits = arm["acceleration_limits"].numbers(count, above=0)
     plan.tip_link = arm["tip_link"].string()
     plan.other_joints = {name: value.number() for name, value in scenario["other_joints"].items()}
-    plan.max_opening = gripper["max_opening"].number(above=0)
+    plan.max_opening = gripper["max_opening"].number(least=0)
     plan.clearance = gripper["clearance"].number(least=0)
     plan.approach = np.array(gripper["approach"].numbers(3))
     plan.fingers = [
@@ -78,14 +78,30 @@ def _read_arm(plan: checks.PlanToCheck, scenario: Node) -> None:
     if "openings" in gripper:
         plan.openings = gripper["openings"].numbers()
     plan.closing = np.array(gripper["closing"].numbers(3))
-    plan.finger_depth = gripper["finger_depth"].number(above=0)
-    plan.finger_width = gripper["finger_width"].number(above=0)
+    plan.finger_depth = gripper["finger_depth"].number(least=0)
+    plan.finger_width = gripper["finger_width"].number(least=0)
+    if "suction" in gripper:
+        plan.suction = _read_suction(gripper["suction"])
+    elif not plan.finger_depth * plan.finger_width > 0:
+        gripper["finger_depth"].fail("must be positive, as finger_width must: the hand has fingers")
+    if "payload" in gripper:
+        plan.payload = gripper["payload"].number(above=0)
     plan.closing_speed = gripper["closing_speed"].number(above=0)
     options = scenario["options"]
     plan.approach_distance = options["approach_distance"].number(above=0)
     plan.lift_height = options["lift_height"].number(above=0)
     plan.finger_links = [link.string() for link in gripper["finger_links"].elements()]
     plan.home = np.array(scenario["home"].numbers(count))
+
+
+def _read_suction(node: Node) -> checks.CheckedSuction:
+    cups = [
+        checks.CheckedCup(np.array(cup["xyz"].numbers(3)), cup["radius"].number(above=0))
+        for cup in node["cups"].elements()
+    ]
+    return checks.CheckedSuction(
+        cups, **{key: node[key].number(above=0) for key in ("max_gap", "vacuum", "friction", "safety")}
+    )
 
 
 def _read_body(node: Node) -> checks.CheckedBody:
@@ -103,6 +119,7 @@ def _read_scene(plan: checks.PlanToCheck, scenario: Node) -> None:
     plan.T_base_bin = place["pose"].pose()
     plan.bin_size = np.array(place["size"].numbers(2, above=0))
     plan.drop_height = place["drop_height"].number(least=0)
+    plan.capacity = place["capacity"].integer(least=1) if "capacity" in place else 0
     plan.obstacles = [_read_body(node) for node in scenario["obstacles"].elements()]
     plan.floor = -math.inf if scenario["floor"].raw is None else scenario["floor"].number()
     plan.trays = [tray["name"].string() for tray in scenario["trays"].elements()]
@@ -121,7 +138,8 @@ def _read_scene(plan: checks.PlanToCheck, scenario: Node) -> None:
         tray = node["tray"]
         if tray.string() not in plan.trays:
             tray.fail("no such tray")
-        parts.append(checks.CheckedPart(_read_body(node), tray.raw, node["target"].boolean(), grasps))
+        mass = node["mass"].number(above=0) if "mass" in node else 0.0
+        parts.append(checks.CheckedPart(_read_body(node), tray.raw, node["target"].boolean(), grasps, mass))
     plan.parts = parts
     plan.allowed_collisions = allowed_collisions(scenario)
     plan.padded = "padding" in scenario and _pads(scenario["padding"])
@@ -169,16 +187,28 @@ def _read_answer(plan: checks.PlanToCheck, root: Node) -> None:
             for node in root["drive_by"]["motions"].elements()
         ]
     plan.lower_bound = root["lower_bound"].integer(least=0)
-    plan.leg_values = [
-        checks.CheckedLegValues(*(leg[key].number() for key in ("length", "turning", "duration")))
-        for leg in root["route"].elements()
-    ]
+    plan.leg_values = [_leg_values(leg) for leg in root["route"].elements()]
+    plan.unloadings = [_read_unloading(node) for node in root["unloadings"].elements()] if "unloadings" in root else []
     plan.intersections = [
         _read_intersection(node, headings)
         for key in ("intersections", "too_small_intersections")
         for node in root[key].elements()
     ]
     plan.robustness_rate = root["robustness_rate"].number()
+
+
+def _leg_values(leg: Node) -> checks.CheckedLegValues:
+    return checks.CheckedLegValues(*(leg[key].number() for key in ("length", "turning", "duration")))
+
+
+def _read_unloading(node: Node) -> checks.CheckedUnloading:
+    to_goal = node["to_goal"]
+    out = checks.CheckedUnloading
+    if "back" not in node:
+        return out(node["after_pick"].integer(), to_goal["poses"].array(3), _leg_values(to_goal))
+    back = node["back"]
+    values = _leg_values(to_goal), _leg_values(back)
+    return out(node["after_pick"].integer(), to_goal["poses"].array(3), values[0], back["poses"].array(3), values[1])
 
 
 def _read_stop(node: Node) -> checks.CheckedStop:

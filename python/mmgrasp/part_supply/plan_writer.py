@@ -42,20 +42,27 @@ def plan_to_dict(scenario: Scenario, plan: PartSupplyPlan) -> dict[str, Any]:
         ],
         "lower_bound": plan.lower_bound,
         "proven_minimal": plan.proven_minimal,
-        "route": [
-            {
-                "poses": leg.poses.tolist(),
-                "length": leg.length,
-                "turning": leg.turning,
-                "duration": leg.duration(scenario.setup.robot),
-            }
-            for leg in plan.route
-        ],
+        "route": [_leg(leg, scenario) for leg in plan.route],
+        **({"unloadings": [_unloading(u, scenario) for u in plan.unloadings]} if plan.unloadings else {}),
         "picks": [pick_to_dict(pick, scenario) for pick in plan.picks],
         "robustness_rate": plan.robustness_rate,
         "obstructions": [o.to_dict() for o in plan.obstructions],
     }
     return content | {"premises": premises(content)}
+
+
+def _leg(leg: _core.BasePath, scenario: Scenario) -> dict[str, Any]:
+    return {
+        "poses": leg.poses.tolist(),
+        "length": leg.length,
+        "turning": leg.turning,
+        "duration": leg.duration(scenario.setup.robot),
+    }
+
+
+def _unloading(unloading: _core.Unloading, scenario: Scenario) -> dict[str, Any]:
+    back = {} if unloading.back is None else {"back": _leg(unloading.back, scenario)}
+    return {"after_pick": unloading.after_pick, "to_goal": _leg(unloading.to_goal, scenario), **back}
 
 
 def scenario_to_dict(scenario: Scenario) -> dict[str, Any]:
@@ -92,6 +99,8 @@ def scenario_to_dict(scenario: Scenario) -> dict[str, Any]:
             "joints": _finger_ends(gripper),
             "finger_links": gripper.finger_links,
             **_openings(gripper),
+            **_suction(gripper),
+            **({"payload": gripper.payload} if math.isfinite(gripper.payload) else {}),
         },
         "other_joints": setup.other_joints,
         "home": setup.home.tolist(),
@@ -103,6 +112,7 @@ def scenario_to_dict(scenario: Scenario) -> dict[str, Any]:
             "pose": pose_to_dict(place.T_base_bin),
             "size": place.size.tolist(),
             "drop_height": place.drop_height,
+            **({"capacity": place.capacity} if place.capacity else {}),
         },
         "floor": scenario.floor,
         "obstacles": [
@@ -151,6 +161,16 @@ def _openings(gripper: Hand) -> dict[str, list[float]]:
     return {"openings": [gripper.min_opening, gripper.max_opening]} if gripper.min_opening > 0 else {}
 
 
+def _suction(gripper: Hand) -> dict[str, Any]:
+    """What holds parts in place of fingers; nothing for a hand that has them."""
+    own = gripper.suction
+    if own is None:
+        return {}
+    cups = [{"xyz": cup.position.tolist(), "radius": cup.radius} for cup in own.cups]
+    numbers = {key: getattr(own, key) for key in ("max_gap", "vacuum", "friction", "safety")}
+    return {"suction": {"cups": cups, **numbers}}
+
+
 def _reach_options() -> dict[str, tuple[Any, str]]:
     return {key: value for key, value in _core._reach_option_table().items() if key != "threads"}
 
@@ -195,6 +215,7 @@ def _part(part: _core.Part, tray: TraySetup) -> dict[str, Any]:
         ]
         if part.target
         else [],
+        **({"mass": part.mass} if part.mass > 0 else {}),
     }
 
 

@@ -104,6 +104,11 @@ class ScenarioPlan:
         robot, arm, home = self.scenario.setup.robot, self.scenario.setup.arm, self.scenario.setup.home
         for i, leg in enumerate(self.route):
             contents[f"drive_{i:02d}.csv"] = RobotMotion.of_drive(leg, robot, arm, home).to_csv()
+        for unloading in self.plan.unloadings:
+            for name, drive in (("to_goal", unloading.to_goal), ("back", unloading.back)):
+                if drive is not None:
+                    csv = RobotMotion.of_drive(drive, robot, arm, home).to_csv()
+                    contents[f"drive_unloading_{unloading.after_pick:02d}_{name}.csv"] = csv
         return write_files(Path(folder), contents, "pick_*.csv", "drive_*.csv", "round.csv")
 
     def __repr__(self) -> str:

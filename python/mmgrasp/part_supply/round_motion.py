@@ -44,6 +44,7 @@ class RoundMotion:
                     self._pass(plan.picks[i], in_passing[i].result)
                     left_out |= {"transit", "approach", "lift", "transfer"}
                 self._pick(plan.picks[i], left_out)
+                self._unload(i)
         assert self.motion is not None
         return self.motion
 
@@ -52,6 +53,15 @@ class RoundMotion:
             self.motion = motion
         else:
             self.motion.append(motion)
+
+    def _unload(self, pick: int) -> None:
+        """To the goal with a full bin, and back where parts are left."""
+        for unloading in self.plan.unloadings:
+            for drive in (unloading.to_goal, unloading.back) if unloading.after_pick == pick else ():
+                if drive is not None:
+                    assert self.motion is not None
+                    arm = self.motion.positions[-1]
+                    self._add(RobotMotion.of_drive(drive, self.setup.robot, self.setup.arm, arm))
 
     def _part(self, pick: _core.Pick) -> str:
         return str(self.scenario.trays[pick.tray].tray.parts[pick.part].name)

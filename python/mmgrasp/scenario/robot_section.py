@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -26,6 +27,7 @@ from .._progress import Progress
 from ..documents.reading import RENAMED, Node, near_miss, read_yaml
 from .closed_fingers import fingers_may_meet, held_links_may_meet
 from .shapes import read_shapes
+from .suction_section import read_cups
 from .wheels import limits_of_wheels
 
 BASE_LIMITS = "linear_velocity angular_velocity linear_acceleration angular_acceleration workspace wheel_velocity wheel_separation"
@@ -34,6 +36,7 @@ ROBOT_KEYS = (
 )
 BIN_LINK = "place_bin"
 LONGEST_CROSSING = 600.0  # from end to end of a joint's range [s]
+MOST_IN_BIN = 1_000_000  # parts
 SLOWEST = 1e-3  # of a base [m/s, rad/s and their rates]: a round that takes days has more samples than memory
 
 
@@ -180,8 +183,9 @@ def read_setup(sections: RobotSections, progress: Progress = None) -> RobotSetup
     arm = _read_group(robot, node["group"], tool_link).with_reference({**other, **closed})
     home = _read_home(node["home"], arm)
     _fixed_to_root(arm, sections.place_region["parent"], home)
-    if "finger_links" in sections.gripper:
-        _check_finger_links(sections.gripper["finger_links"], arm, tool_link, home)
+    for key in ("finger_links", "cup_links"):
+        if key in sections.gripper:
+            _check_finger_links(sections.gripper[key], arm, tool_link, home)
     speed = sections.gripper["closing_speed"].number(above=0, most=10) if "closing_speed" in sections.gripper else 0.1
     place_region = _read_place_region(sections.place_region, bin_pose)
     return RobotSetup(robot, arm, gripper, place_region, home, other, speed)
@@ -328,10 +332,16 @@ def _read_home(node: Node, arm: JointGroup) -> np.ndarray:
 
 
 def _read_gripper(node: Node, robot: Robot, tool_link: str) -> Hand:
+    payload = node["payload"].number(above=0) if "payload" in node else math.inf
+    if "suction" in node:
+        node.mapping("approach suction cup_links", "payload")
+        for link in node["cup_links"].elements():
+            _link(robot, link)
+        return read_cups(node, robot, tool_link, _axes(node)["approach"], payload)
     if "from_robot" in node:
-        return _gripper_from_robot(node, robot, tool_link)
+        return _gripper_from_robot(node, robot, tool_link, payload)
     node.mapping(
-        "approach closing max_opening finger_depth finger_width joints finger_links", "clearance closing_speed"
+        "approach closing max_opening finger_depth finger_width joints finger_links", "clearance closing_speed payload"
     )
     joints: list[HandJoint] = []
     for joint in node["joints"].elements():
@@ -358,6 +368,7 @@ def _read_gripper(node: Node, robot: Robot, tool_link: str) -> Hand:
             closing=axes["closing"],
             joints=joints,
             finger_links=[link.raw for link in links],
+            payload=payload,
             **sizes,
         )
     _check_finger_travel(node["joints"], robot, hand)
@@ -393,9 +404,9 @@ def _axes(node: Node) -> dict[str, Any]:
     return axes
 
 
-def _gripper_from_robot(node: Node, robot: Robot, tool_link: str) -> Hand:
+def _gripper_from_robot(node: Node, robot: Robot, tool_link: str, payload: float) -> Hand:
     """A hand measured on the robot's own shapes; what the section states goes first."""
-    node.mapping("from_robot", "approach closing clearance closing_speed")
+    node.mapping("from_robot", "approach closing clearance closing_speed payload")
     source = node["from_robot"]
     if source.raw is not True and not isinstance(source.raw, str):
         source.fail("must be an SRDF end effector or group, or true: every joint below the tool frame's body")
@@ -403,14 +414,15 @@ def _gripper_from_robot(node: Node, robot: Robot, tool_link: str) -> Hand:
     if "clearance" in node:
         stated["clearance"] = node["clearance"].number(least=0)
     try:
-        return Hand.from_robot(robot, tool_link, group="" if source.raw is True else source.string(), **stated)
+        hand = Hand.from_robot(robot, tool_link, group="" if source.raw is True else source.string(), **stated)
     except InvalidInput as error:
         node.fail(str(error))
+    return hand.with_payload(payload)
 
 
 def _add_bin(robot: Robot, node: Node) -> tuple[Robot, np.ndarray]:
     """The robot with the bin's solid box as a link; the link's frame is the middle of the box's top face."""
-    node.mapping("parent pose size", "drop_height")
+    node.mapping("parent pose size", "drop_height capacity")
     _link(robot, node["parent"])
     size = node["size"].numbers(3, above=0)
     parent, T_parent_bin = node["parent"].string(), node["pose"].pose()
@@ -425,7 +437,12 @@ def _add_bin(robot: Robot, node: Node) -> tuple[Robot, np.ndarray]:
 
 def _read_place_region(node: Node, T_root_bin: np.ndarray) -> PlaceRegion:
     size = node["size"].numbers(3, above=0)
-    options = {"drop_height": node["drop_height"].number(least=0)} if "drop_height" in node else {}
+    options: dict[str, Any] = {}
+    if "drop_height" in node:
+        options["drop_height"] = node["drop_height"].number(least=0)
+    if "capacity" in node:
+        options["capacity"] = node["capacity"].integer(least=1)
+        node["capacity"].within((1, MOST_IN_BIN))
     with node.blamed():
         return PlaceRegion(T_root_bin, size[:2], **options)
 

@@ -20,11 +20,12 @@ from ..documents.reading import RENAMED, Node, read_yaml
 from . import cell_bodies, drawn_bodies, floor_map
 from .contact_rules import ContactRules, read_contact_rules
 from .grid_size import check_grid_size
+from .part_type import PartType
 from .robot_section import RobotSetup, choose_sections, find_file, read_setup
 from .scan_section import ScanReader, moved
 from .schema import with_article
 from .shapes import read_shapes
-from .tray_section import PartType, TraySetup, read_part_types, read_tray
+from .tray_section import TraySetup, read_part_types, read_tray
 
 TOP_KEYS = "format version name robot start goal positioning_uncertainty trays"
 TOP_OPTIONAL = (
@@ -195,6 +196,8 @@ def _read_scenario(
     _check_names(root, obstacles, trays)
     names = [o.name for o in obstacles] + ([FLOOR] if floor is not None else [])
     rules = read_contact_rules(root, setup.robot, names, [p.name for t in trays for p in t.tray.parts])
+    if setup.gripper.suction is not None and any([*rules.padding.get("by_name", {}).values(), *_everywhere(rules)]):
+        root["padding"].fail("must be left out: a hand of suction cups comes within 0.2 mm of its parts")
     _check_apart(root["trays"], trays, obstacles, floor)
     if seed is not None:
         options["seed"] = seed
@@ -218,6 +221,10 @@ def _read_scenario(
     for key in ("start", "goal"):
         _check_stands_free(root[key], scenario)
     return scenario
+
+
+def _everywhere(rules: ContactRules) -> list[float]:
+    return [rules.padding.get(key, 0.0) for key in ("links", "attached", "objects")]
 
 
 def _check_header(root: Node) -> None:

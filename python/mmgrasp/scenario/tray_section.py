@@ -11,6 +11,8 @@ from .. import _core
 from .._core import Box, Grasp, Hand, LinkShape, Part, Tray
 from .._core import verify as checks
 from ..documents.reading import Node, near_miss
+from .cup_grasps import read_cup_grasps
+from .part_type import PartType, read_grasp_options
 from .robot_section import find_file
 from .scan_section import ScanReader, TrayScan, moved
 from .shapes import read_shapes
@@ -23,16 +25,6 @@ GAP = 0.001  # parts rest this far above the floor, so that nothing touches at r
 
 Placed = tuple[str, str, np.ndarray]
 """Name, type and T_tray_part of a typed part."""
-
-
-@dataclass
-class PartType:
-    """One of `part_types`: shapes, and grasps or how to sample them."""
-
-    shapes: list[LinkShape]
-    grasps: list[Grasp]
-    too_wide: int
-    node: Node
 
 
 @dataclass
@@ -60,27 +52,26 @@ def read_part_types(node: Node, gripper: Hand) -> dict[str, PartType]:
     """The section `part_types`; raises InvalidInput for grasps that hold nothing."""
     types = {}
     for name, entry in node.items():
-        entry.mapping("", "box cylinder sphere mesh shapes scale grasps grasp_options")
+        entry.mapping("", "box cylinder sphere mesh shapes scale mass grasps grasp_options")
         shapes = read_shapes(entry, find_file)
+        mass = entry["mass"].number(above=0, most=1e6) if "mass" in entry else 0.0
+        if gripper.suction is not None:
+            types[name] = read_cup_grasps(entry, name, shapes, gripper, mass)
+            continue
         if "grasps" in entry:
             grasps, too_wide = _listed_grasps(entry["grasps"], gripper)
             _check_they_hold(entry["grasps"], name, shapes, grasps, gripper)
             _check_openings(entry["grasps"], name, shapes, gripper)
         else:
             grasps, too_wide = _core._sample_grasps(shapes, gripper, **_grasp_options(entry))
-        types[name] = PartType(shapes, grasps, too_wide, entry)
+        types[name] = PartType(shapes, grasps, too_wide, entry, mass)
     return types
 
 
 def _grasp_options(entry: Node) -> dict[str, Any]:
-    if "grasp_options" not in entry:
+    options = read_grasp_options(entry, _core._grasp_option_table())
+    if not options:
         return {}
-    options: dict[str, Any] = {}
-    known = _core._grasp_option_table()
-    for key, value in entry["grasp_options"].items():
-        if key not in known:
-            value.refuse_key(list(known))
-        options[key] = value.integer() if isinstance(known[key][0], int) else value.number()
     try:
         _core._sample_grasps([LinkShape(Box([0.01, 0.01, 0.01]))], _any_gripper(), **options)
     except _core.InvalidInput as error:
@@ -155,6 +146,8 @@ def read_tray(node: Node, types: dict[str, PartType], gripper: Hand, scans: Scan
     if len(headings) > MOST_HEADINGS:
         node["headings"].fail(f"must be at most {MOST_HEADINGS} headings: each is a layer of the base grid")
     if "scan" in node:
+        if gripper.suction is not None:
+            node["scan"].fail("objects of a scan are held by fingers: the gripper has suction cups")
         _check_scannable(node, T_world_tray, body)
         parts, targets, scan = _scanned(node, types, name, T_world_tray, list(body.size), scans)
     else:
@@ -256,6 +249,7 @@ def _typed(
                 types[kind].grasps,
                 target=full in targets,
                 grasps_too_wide=types[kind].too_wide,
+                mass=types[kind].mass,
             )
         )
     return parts, targets
@@ -354,8 +348,14 @@ def _check_inside(node: Node, name: str, kind: PartType, T: np.ndarray, body: Tr
 
 
 def _check_graspable(name: str, kind: PartType, gripper: Hand) -> None:
+    if gripper.suction is not None and kind.mass == 0:
+        kind.node.fail(f"part {name} has no mass [kg], which a hand of suction cups must know: cups hold by force")
+    if kind.mass > gripper.payload:
+        kind.node["mass"].fail(f"part {name} weighs more than the gripper's payload, {gripper.payload:g} kg")
     if kind.grasps:
         return
+    if kind.why_none:
+        kind.node.fail(f"part {name} has no grasp: {kind.why_none}")
     if kind.too_wide:
         kind.node.fail(
             f"part {name} is larger than the gripper: none of {kind.too_wide} grasps fits its opening of "

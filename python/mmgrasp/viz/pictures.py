@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .._files import write_file
+from ..part_supply.drives import all_drives
 from . import png
 from .raster import Camera, render
 from .scene import PlanScene
@@ -143,7 +144,7 @@ def write_topview(plan: dict[str, Any], path: Path) -> Path:
             corners = np.array(edge).reshape(2, 2) * plan["grid"]["resolution"] + plan["grid"]["origin"]
             axes.plot(corners[:, 0], corners[:, 1], color=ROUTE, linewidth=1.0, zorder=4)
     _draw_bodies(axes, plan)
-    for leg in plan["route"]:
+    for leg in all_drives(plan):
         poses = np.asarray(leg["poses"], float).reshape(-1, 3)
         axes.plot(poses[:, 0], poses[:, 1], "--", color=ROUTE, linewidth=1.8, zorder=5)
     for number, stop in enumerate(plan["stops"], start=1):

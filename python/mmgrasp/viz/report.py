@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import itertools
 import math
 from collections.abc import Collection, Sequence
 from html import escape
@@ -12,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from .._files import write_file
+from ..part_supply.drives import all_drives
 from ..part_supply.premises import premises, premises_text
 from .style import tray_colour
 from .timeline import Timeline
@@ -124,15 +126,16 @@ def _tray(plan: dict[str, Any], name: str) -> str:
 
 def _headline(plan: dict[str, Any]) -> str:
     scenario = plan["scenario"]
-    driven = sum(leg["length"] for leg in plan["route"])
+    driven = sum(leg["length"] for leg in all_drives(plan))
     cards = []
     if plan["outcome"] == "solved":
-        drive = sum(leg["duration"] for leg in plan["route"])
+        drive = sum(leg["duration"] for leg in all_drives(plan))
         radius = min(stop["radius"] for stop in plan["stops"])
         cards = [
             (str(len(plan["stops"])), f"stops; fewer than {plan['lower_bound']} is proven impossible"),
             (str(len(plan["picks"])), "parts picked"),
             (f"{driven:.1f} m", f"driven in {clock(drive)}"),
+            *([(str(len(plan["unloadings"]) + 1), _trips(plan))] if "unloadings" in plan else []),
             (f"{radius:.2f} m", f"smallest disc; {scenario['positioning_uncertainty']:.2f} m asked for"),
             (
                 f"{100 * plan['robustness_rate']:.1f} %",
@@ -148,6 +151,12 @@ def _headline(plan: dict[str, Any]) -> str:
         f"<h1>{escape(headline(plan))}</h1><p class='lead'>Scenario {source}, planned by mmgrasp "
         f"{escape(plan['mmgrasp'])}</p><div class='cards'>{tiles}</div>{proof}"
     )
+
+
+def _trips(plan: dict[str, Any]) -> str:
+    ends = [*(unloading["after_pick"] + 1 for unloading in plan["unloadings"]), len(plan["picks"])]
+    loads = [str(b - a) for a, b in itertools.pairwise([0, *ends])]
+    return f"trips, of {', '.join(loads[:-1])} and {loads[-1]} parts; the bin takes {plan['scenario']['place_region']['capacity']}"
 
 
 def _obstructions(plan: dict[str, Any]) -> str:
@@ -344,13 +353,21 @@ def _timings(timings: Sequence[tuple[str, float]]) -> str:
     return "<h2>Time spent planning</h2>" + table(["stage", "seconds", ""], rows, {1}) if rows else ""
 
 
+def _hand(gripper: dict[str, Any]) -> list[str]:
+    if "suction" not in gripper:
+        return ["gripper opening", f"{gripper['max_opening']:.3f} m"]
+    cups, vacuum = gripper["suction"]["cups"], gripper["suction"]["vacuum"]
+    force = sum(vacuum * math.pi * cup["radius"] ** 2 for cup in cups)
+    return ["suction cups", f"{len(cups)}, {force:.1f} N together"]
+
+
 def _facts(plan: dict[str, Any]) -> str:
     scenario = plan["scenario"]
     gripper = scenario["gripper"]
     rows = [
         ["base", escape(scenario["robot"]["base"])],
         ["arm joints", escape(", ".join(scenario["arm"]["joints"]))],
-        ["gripper opening", f"{gripper['max_opening']:.3f} m"],
+        _hand(gripper),
         ["positioning uncertainty", f"{scenario['positioning_uncertainty']:.3f} m"],
         ["grid", f"{plan['grid']['nx']} x {plan['grid']['ny']} cells of {plan['grid']['resolution']:.3f} m"],
         ["obstacles, parts", f"{len(scenario['obstacles'])}, {len(scenario['parts'])}"],

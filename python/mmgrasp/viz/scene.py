@@ -47,7 +47,7 @@ class PlanScene:
         values = dict(scenario["other_joints"])
         gripper = scenario["gripper"]
         for finger in gripper["joints"]:
-            share = state.opening / gripper["max_opening"]
+            share = state.opening / gripper["max_opening"]  # a hand of cups has no fingers
             values[finger["name"]] = finger["closed"] + share * (finger["open"] - finger["closed"])
         values.update(zip(scenario["arm"]["joints"], map(float, state.arm), strict=True))
         return values

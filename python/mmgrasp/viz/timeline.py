@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..bodies import stored_pose
+from ..part_supply.drives import unloading_after
 
 GRIP_TIME = 0.5  # Shown for closing and for opening the fingers [s].
 
@@ -64,6 +65,10 @@ class Timeline:
                 keeps_retreat = passing.get(i + 1, {}).get("begins") != "release"
                 clock = self._add_pick(pick, base, parts, removed, clock, passing.get(i), keeps_retreat)
                 removed = removed | {pick["part"]}
+                for where, drive in unloading_after(plan, i):
+                    poses = np.asarray(drive["poses"], float).reshape(-1, 3)
+                    name, seconds = f"drive to {where}", float(drive["duration"])
+                    clock = self._add(Segment(name, clock, seconds, "drive", poses, removed=removed))
         self.duration = clock
 
     def _add(self, segment: Segment) -> float:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..bodies import Body, stored_pose, stored_shape
+from ..part_supply.drives import all_drives
 from .style import OBSTACLE, PART, ROUTE, STOP, TRAY_BODY, tray_colour
 
 SCALE = 120.0  # pixels a metre
@@ -125,7 +126,7 @@ class TopView:
         for obstacle in self.scenario["obstacles"]:
             for outline in footprint(obstacle["shapes"], obstacle["pose"]):
                 points += [outline.min(axis=0), outline.max(axis=0)]
-        for leg in self.plan["route"]:
+        for leg in all_drives(self.plan):
             points += [np.asarray(p[:2], float) for p in leg["poses"]]
         stacked = np.array(points)
         return stacked.min(axis=0) - 0.25, stacked.max(axis=0) + 0.25
@@ -208,7 +209,7 @@ class TopView:
                 self._polygon(outline, f'fill="{colour}" class="part"', part["name"])
 
     def _route(self) -> None:
-        for leg in self.plan["route"]:
+        for leg in all_drives(self.plan):
             points = " ".join(f"{x:.1f},{y:.1f}" for x, y in (self.point(p) for p in leg["poses"]))
             title = f"{leg['length']:.2f} m driven, {np.degrees(leg['turning']):.0f} degrees turned"
             self.items.append(f'<polyline points="{points}" class="route"><title>{title}</title></polyline>')

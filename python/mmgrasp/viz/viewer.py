@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from .._core import quat_xyzw_from_rotation
+from ..part_supply.drives import all_drives
 from .pictures import write_scene as write_png
 from .scene import PlanScene, obstacle_colour
 from .style import PART, STOP, rgb, tray_colour
@@ -89,7 +90,7 @@ class PlanViewer:
             ]
             self.server.scene.add_spline_catmull_rom(f"/stops/{number}", ring, color=rgb(STOP), line_width=4)
             self.server.scene.add_label(f"/stops/{number}/label", f"stop {number}", position=(*stop["pose"][:2], 0.1))
-        for index, leg in enumerate(self.plan["route"]):
+        for index, leg in enumerate(all_drives(self.plan)):
             points = np.asarray(leg["poses"], float).reshape(-1, 3).copy()
             points[:, 2] = 0.02
             if len(points) > 1:

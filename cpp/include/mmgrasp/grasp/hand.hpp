@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -8,6 +9,7 @@
 
 #include "mmgrasp/core/export.hpp"
 #include "mmgrasp/grasp/grasp.hpp"
+#include "mmgrasp/grasp/suction.hpp"
 #include "mmgrasp/robot/joint.hpp"
 
 namespace mmgrasp {
@@ -67,6 +69,8 @@ struct MMGRASP_EXPORT HandReading {
 ///     hand.joint_values(0.04);                      // {left_finger_joint: 0.02, right_finger_joint: 0.02}
 ///
 ///     Hand read = Hand::from_robot(robot, "tool");   // from URDF and SRDF, measured by forward kinematics
+///
+/// A hand of suction cups has no fingers: no joints, and every opening is 0.
 struct MMGRASP_EXPORT Hand {
   std::string tool_link;                                ///< Robot link whose frame is the tool frame.
   Eigen::Vector3d approach = Eigen::Vector3d::UnitX();  ///< Unit axis of the tool frame along which the hand moves in.
@@ -85,6 +89,9 @@ struct MMGRASP_EXPORT Hand {
   std::map<std::string, double> preshape;
   std::vector<std::string> finger_links;  ///< Links that may touch the attached part.
   HandBody body;
+  /// Cups in place of fingers: then there are no joints, and openings, pads and clearance are 0.
+  std::optional<Suction> suction;
+  double payload = std::numeric_limits<double>::infinity();  ///< Heaviest part that hand and arm may carry [kg], > 0.
 
   /// Reads a hand from a robot loaded with its meshes. Which joints spread the fingers and which end of a closing joint
   /// is open comes from forward kinematics; SRDF states of the group named open and closed (or close) take precedence
@@ -93,7 +100,12 @@ struct MMGRASP_EXPORT Hand {
   /// finger tips stand opposite each other, a tip has no shape, or the tool link lies beyond the tips.
   static Hand from_robot(const Robot& robot, const std::string& tool_link, const HandReading& reading = {});
 
+  /// A hand of suction cups that face along `approach` (unit, tool frame); `cup_links` may touch the attached part.
+  static Hand of_cups(const std::string& tool_link, const Eigen::Vector3d& approach, const Suction& suction,
+                      const std::vector<std::string>& cup_links);
+
   void check() const;  ///< Throws InvalidInput: axes unit and orthogonal, sizes positive, joints and groups known.
+  void check_fingers() const;  ///< check(), and throws InvalidInput for a hand of suction cups.
   /// Names of the joint groups in the order of their first joints.
   std::vector<std::string> groups() const;
   /// How far open the fingers are at an opening, in [0, 1]; below min_opening they are closed. Throws InvalidInput

@@ -43,6 +43,13 @@ struct MMGRASP_EXPORT Obstruction {
   double needed_opening = 0;
 };
 
+/// A drive to the goal with a full bin, which is emptied there. Parts may be left at the stop that it leaves.
+struct MMGRASP_EXPORT Unloading {
+  int after_pick = -1;  ///< Index of the plan's pick that filled the bin.
+  BasePath to_goal;     ///< From the stop of that pick.
+  BasePath back;        ///< To the same stop, where parts are left; without poses: the next leg of the route goes on.
+};
+
 /// A whole plan: where the base stops, how it drives there, and every pick.
 struct MMGRASP_EXPORT PartSupplyPlan {
   Outcome outcome = Outcome::not_found;
@@ -54,8 +61,10 @@ struct MMGRASP_EXPORT PartSupplyPlan {
   /// The stops are as few as the regions allow. False when that is not proven: the search for shared regions or for the
   /// least cover ended early, or no stops were found.
   bool proven_minimal = false;
-  std::vector<BasePath> route;  ///< stops.size() + 1 legs, from start to goal.
-  std::vector<Pick> picks;      ///< Picks in the order in which they are carried out.
+  /// stops.size() + 1 legs, from start to goal; a leg after a stop that was left to unload begins at the goal.
+  std::vector<BasePath> route;
+  std::vector<Unloading> unloadings;  ///< As they are carried out; one less than trips.
+  std::vector<Pick> picks;            ///< Picks in the order in which they are carried out.
   /// Share of the base poses drawn at a stop from which all its parts stay graspable: the least of all stops.
   double robustness_rate = 0;
   std::vector<Obstruction> obstructions;  ///< Empty if and only if solved.

@@ -62,6 +62,7 @@ struct MMGRASP_EXPORT PickProblem {
   Eigen::VectorXd home;       ///< Arm configuration at the beginning and at the end, fingers closed.
   std::vector<Pose> places;   ///< World poses of the object at which it may be released; empty: it stays in the hand.
   PickOptions options;
+  double mass = 0;     ///< What the object weighs [kg]; 0: not known, which suction cups cannot hold.
   void check() const;  ///< Throws InvalidInput naming field, value and rule.
 };
 

@@ -22,6 +22,7 @@ struct MMGRASP_EXPORT Part {
   bool target = true;         ///< False: it stays, and is an obstacle.
   std::vector<Grasp> grasps;  ///< Candidates, best first; without postures.
   int grasps_too_wide = 0;    ///< Candidates dropped before planning because the gripper does not open so far.
+  double mass = 0;            ///< [kg]; 0: not known, which suction cups cannot hold.
 };
 
 /// A tray and the parts in it. The tray's own walls are scene objects.
@@ -40,6 +41,9 @@ struct MMGRASP_EXPORT PlaceRegion {
   Pose T_base_bin = Pose::Identity();                ///< Middle of the bin's top plane in the root frame, z up.
   Eigen::Vector2d size = Eigen::Vector2d(0.3, 0.3);  ///< Inner x and y [m], > 0.
   double drop_height = 0.03;                         ///< [m], >= 0
+  /// So many parts fill the bin; then the robot drives to the goal, where it is emptied, and on from there. 0: it takes
+  /// all.
+  int capacity = 0;
 };
 
 /// The base poses tried around a tray: how dense, how far away, and with how many guesses for the arm.

@@ -44,13 +44,15 @@ struct MMGRASP_EXPORT PlanCheckOptions {
 ///   `scene-collision`, `attached-collision`;
 /// - what it is for: `not-straight` (approach, lift), `short-approach`, `grasp-missed`, `grasp-empty` (fewer than two
 ///   fingers close on it, or a listed grasp has nothing between the pads), `grasp-opening` (pads at this width would
-///   stand in the part, or clear of it), `no-lift` (or one that is too low), `release-outside`, `release-tilted`,
-///   `release-height`;
+///   stand in the part, or clear of it), `no-seal` (a suction cup that is not on the part's surface), `payload` (a part
+///   heavier than the hand may carry, or than its cups hold on the way), `no-lift` (or one that is too low),
+///   `release-outside`, `release-tilted`, `release-height`;
 /// - a motion in passing, besides those of arm motions: `drive-by-pick` (from home and not the first of its stop,
 ///   from a release that is none, twice, unknown),
 ///   `closing-time` (outside the motion, or faster than the fingers), `base-limit` (velocity or acceleration of base or
 ///   wheels), `base-off-course` (where its velocities do not lead);
-/// - the route: `route-legs` (their number), `route-ends`, `route-not-driveable`, `route-collision`, `too-long`;
+/// - the route: `route-legs` (their number), `route-ends`, `route-not-driveable`, `route-collision`, `too-long`,
+///   `unloading` (at a pick where it cannot be), `capacity` (more parts in the bin than it takes);
 /// - stops: `region-malformed`, `region-missing`, `region-too-small`, `stop-heading`, `stop-radius`,
 ///   `stop-outside-region`, `not-minimal`, `lower-bound`, `not-robust`, `arrival-rate` (arrivals serve all parts more
 ///   or less often than said, by more than chance), `region-inflated` (base poses in it that serve nothing),
@@ -108,6 +110,12 @@ struct CheckedPads {
   Eigen::Vector3d approach, closing;
   double max_opening, finger_depth, finger_width;
 };
+
+/// What is wrong with the seal of the cups at the grasp, which face along `approach` (unit, tool frame): the rims of
+/// all must have the part's surface before them, no farther than max_gap, and what they enclose must be covered by it,
+/// no deeper than their radius; empty: they seal. By FCL, with needles of those lengths.
+MMGRASP_EXPORT std::string broken_seal(const CheckedSuction& suction, const Eigen::Vector3d& approach,
+                                       const std::vector<LinkShape>& part, const CheckedGrasp& grasp);
 
 /// How far apart [m] pads are when they close on the part at the grasp, where that is not the grasp's opening, within
 /// 3 mm or a tenth of it.

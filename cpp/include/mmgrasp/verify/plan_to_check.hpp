@@ -33,6 +33,22 @@ struct MMGRASP_EXPORT CheckedPart {
   std::string tray;
   bool target = true;
   std::vector<CheckedGrasp> grasps;
+  double mass = 0;  ///< [kg]; 0: not known.
+};
+
+/// A suction cup: its rim is a circle about `position` in the tool frame, across the approach [m].
+struct MMGRASP_EXPORT CheckedCup {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  double radius = 0;
+};
+
+/// Suction cups of a hand in place of fingers.
+struct MMGRASP_EXPORT CheckedSuction {
+  std::vector<CheckedCup> cups;
+  double max_gap = 0;   ///< A cup seals where the part's surface falls back from its rim by no more than this [m].
+  double vacuum = 0;    ///< Below the pressure of the air [Pa].
+  double friction = 0;  ///< Coulomb coefficient of rim and part.
+  double safety = 1;    ///< The force must be so many times what holding needs.
 };
 
 /// A joint of the hand, and its values while the fingers are closed and open [rad or m].
@@ -107,6 +123,13 @@ struct MMGRASP_EXPORT CheckedLegValues {
   double length = 0, turning = 0, duration = 0;
 };
 
+/// A drive to the goal, where the bin is emptied, and back to the stop where parts are left (no poses: it goes on).
+struct MMGRASP_EXPORT CheckedUnloading {
+  int after_pick = -1;  ///< Index into the plan's picks.
+  std::vector<Eigen::Vector3d> to_goal, back;
+  CheckedLegValues to_goal_values, back_values = {};
+};
+
 /// A place that a plan says lies in the regions of several trays.
 struct MMGRASP_EXPORT CheckedIntersection {
   std::vector<std::string> trays;
@@ -149,6 +172,9 @@ struct MMGRASP_EXPORT PlanToCheck {
   std::vector<double> openings;
   std::vector<std::string> finger_links;  ///< Links that may touch the attached part.
   double closing_speed = 0.1;             ///< How fast the gripper's opening shrinks [m/s], for drive_by.
+  /// The hand holds by these; then it has no fingers, and max_opening is 0. Without a cup: a hand with fingers.
+  CheckedSuction suction;
+  double payload = std::numeric_limits<double>::infinity();  ///< Heaviest part that may be picked [kg].
 
   // Room and parts
   /// Everything below this height is ground [m], which what the arm joints move must not touch: the arm, the fingers,
@@ -170,6 +196,7 @@ struct MMGRASP_EXPORT PlanToCheck {
   Pose T_base_bin = Pose::Identity();                    ///< Middle of the bin's top plane in the root frame, z up.
   Eigen::Vector2d bin_size = Eigen::Vector2d(0.3, 0.3);  ///< Inner x and y [m].
   double drop_height = 0.03;  ///< Height above the bin's top plane at which parts are released [m].
+  int capacity = 0;           ///< So many parts fill the bin; 0: it takes all.
 
   // What is claimed of base regions and stops
   CheckedGrid grid;
@@ -186,6 +213,7 @@ struct MMGRASP_EXPORT PlanToCheck {
 
   // Motions
   std::vector<std::vector<Eigen::Vector3d>> route;  ///< stops.size() + 1 legs of base poses.
+  std::vector<CheckedUnloading> unloadings;         ///< As they are carried out.
   std::vector<CheckedLegValues> leg_values;         ///< One a leg; empty: not given.
   std::vector<CheckedPick> picks;
   std::vector<CheckedDriveBy> drive_by;  ///< What of route and picks is done in passing.

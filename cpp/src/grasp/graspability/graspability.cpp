@@ -169,7 +169,7 @@ Graspability evaluate_graspability(const HeightMap& map, const Hand& hand, const
                                    const Monitor& monitor) {
   options.check();
   map.check();
-  hand.check();
+  hand.check_fingers();
   const Evaluation evaluation(map, hand, options);
   std::vector<ItemResult> results(evaluation.items());
   parallel_for(

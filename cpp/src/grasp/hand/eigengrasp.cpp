@@ -78,7 +78,7 @@ Hand eigengrasp_hand(const Robot& robot, const std::string& tool_link, const std
   const std::vector<FingerPad> pads = model->pads(std::vector<double>(model->groups(), 0.5));
   hand.finger_depth = pads[0].depth;
   hand.finger_width = pads[0].width;
-  hand.check();
+  hand.check_fingers();
   return hand;
 }
 

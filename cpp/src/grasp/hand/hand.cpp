@@ -1,7 +1,9 @@
 #include "mmgrasp/grasp/hand.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
 
 #include "grasp/hand/hand_outline.hpp"
@@ -50,6 +52,20 @@ void check_openings(const std::vector<double>& openings, double least, double la
           "must go from min_opening to max_opening");
 }
 
+void check_suction(const Hand& hand) {
+  hand.suction->check();
+  const double sizes[] = {hand.min_opening, hand.max_opening, hand.finger_depth, hand.finger_width, hand.clearance};
+  const bool none = std::all_of(std::begin(sizes), std::end(sizes), [](double size) { return size == 0; });
+  require(none && hand.joints.empty() && hand.openings.empty() && hand.preshape.empty(), "hand.suction",
+          "beside fingers",
+          "cups have no fingers: openings, finger_depth, finger_width and clearance must be 0, no joints");
+  for (const SuctionCup& cup : hand.suction->cups) {
+    const double off = cup.position.dot(hand.approach);
+    require(std::abs(off) <= kUnitTolerance, "hand.suction.cups position . hand.approach", off,
+            "must be 0: the rims lie in the plane through the tool frame's origin, across the approach [m]");
+  }
+}
+
 }  // namespace
 
 const char* to_string(ClosingKind kind) {
@@ -71,12 +87,28 @@ void HandBody::check() const {
   require_length(palm_width, "hand.body.palm_width");
 }
 
+Hand Hand::of_cups(const std::string& tool_link, const Eigen::Vector3d& approach, const Suction& suction,
+                   const std::vector<std::string>& cup_links) {
+  check_unit_axis(approach, "approach");
+  Hand hand;
+  hand.tool_link = tool_link;
+  hand.approach = approach;
+  hand.closing = approach.unitOrthogonal();
+  hand.max_opening = hand.finger_depth = hand.finger_width = hand.clearance = 0;
+  hand.finger_links = cup_links;
+  hand.suction = suction;
+  hand.check();
+  return hand;
+}
+
 void Hand::check() const {
   check_unit_axis(approach, "hand.approach");
   check_unit_axis(closing, "hand.closing");
   const double dot = approach.dot(closing);
   require(std::abs(dot) <= kUnitTolerance, "hand.approach . hand.closing", dot,
           "the two axes must be orthogonal within 1e-6");
+  require(payload > 0, "hand.payload", payload, "must be positive [kg]");
+  if (suction) return check_suction(*this);
   require_length(max_opening, "hand.max_opening");
   require(min_opening >= 0 && min_opening < max_opening, "hand.min_opening", min_opening,
           "must be in [0, max_opening) [m]");
@@ -94,6 +126,11 @@ void Hand::check() const {
   body.check();
 }
 
+void Hand::check_fingers() const {
+  check();
+  require(!suction, "hand", "suction cups", "must be a hand with fingers");
+}
+
 std::vector<std::string> Hand::groups() const {
   std::vector<std::string> names;
   for (const HandJoint& joint : joints)
@@ -104,6 +141,7 @@ std::vector<std::string> Hand::groups() const {
 double Hand::share_open(double opening) const {
   require(opening >= -kOpeningSlack && opening <= max_opening + kOpeningSlack, "opening", opening,
           "must lie between 0 and the hand's max_opening " + std::to_string(max_opening) + " [m]");
+  if (suction) return 0;
   if (openings.empty()) return std::clamp((opening - min_opening) / (max_opening - min_opening), 0.0, 1.0);
   const double within = std::clamp(opening, min_opening, max_opening);
   const auto above = std::upper_bound(openings.begin() + 1, openings.end() - 1, within);
@@ -154,7 +192,7 @@ double Hand::pregrasp_opening(double width) const {
 }
 
 std::vector<LinkShape> Hand::shapes(double opening) const {
-  check();
+  check_fingers();
   const detail::HandOutline outline(*this, opening);
   Pose T_hand_axes = Pose::Identity();
   T_hand_axes.linear() << approach, closing, approach.cross(closing);

@@ -70,7 +70,7 @@ void MaskImage::check(const char* field) const {
 }
 
 HandMasks make_hand_masks(const Hand& hand, double opening, double angle, double resolution, double margin) {
-  hand.check();
+  hand.check_fingers();
   require_number(angle, "angle", "rad");
   require_positive(resolution, "resolution", "m");
   require_not_negative(margin, "margin", "m");

@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 /// The pads of Hand's numbers: midway on the closing axis, as deep as finger_depth along the approach.
 class NumberedHand final : public HandModel {
  public:
-  explicit NumberedHand(const Hand& hand) : hand_(hand) { hand_.check(); }
+  explicit NumberedHand(const Hand& hand) : hand_(hand) { hand_.check_fingers(); }
 
   const Hand& hand() const override { return hand_; }
   int groups() const override { return 1; }

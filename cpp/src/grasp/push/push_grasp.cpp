@@ -112,7 +112,7 @@ void PushGraspProblem::check() const {
 }
 
 PushGraspProblem push_grasp_problem(const Hand& hand, double object_width) {
-  hand.check();
+  hand.check_fingers();
   PushGraspProblem problem;
   problem.opening = hand.max_opening;
   problem.object_width = object_width;

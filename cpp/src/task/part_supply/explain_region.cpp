@@ -128,9 +128,11 @@ std::string advice(const PartExplanation& part, const Obstruction& o, std::size_
   if (r.grasp_filter == r.total()) {
     return "the open hand touches the scene or a neighbour at every grasp: give grasps from above, lower the tray's "
            "walls or leave "
-           "more room between the parts (gripper opens to " +
-           metres(problem.gripper.max_opening) +
-           (too_wide > 0 ? ", " + std::to_string(too_wide) + " grasps were too wide)" : ")");
+           "more room between the parts" +
+           (problem.gripper.suction
+                ? ""
+                : " (gripper opens to " + metres(problem.gripper.max_opening) +
+                      (too_wide > 0 ? ", " + std::to_string(too_wide) + " grasps were too wide)" : ")"));
   }
   if (r.unreachable + r.limits >= collisions) {
     return "bring the part nearer to where the robot can stand, allow other base headings, or give grasps from other "

@@ -202,6 +202,7 @@ class PartSupply {
   void start_again(const PartSupplyPlan& first) {
     plan_.picks.clear();
     plan_.route.clear();
+    plan_.unloadings.clear();
     plan_.obstructions.clear();
     plan_.outcome = first.outcome;
   }
@@ -225,7 +226,7 @@ class PartSupply {
       if (!plan_picks_at_stop(stop, routes, picked)) return false;
     }
     join_picks();
-    return plan_legs(routes);
+    return plan_unloadings(routes) && plan_legs(routes);
   }
 
   bool put_stops_in_order(BaseRoutes& routes) {
@@ -316,13 +317,43 @@ class PartSupply {
     return true;
   }
 
+  /// Trips to the goal each time that the bin is full, but for the last one, which ends the route.
+  bool plan_unloadings(BaseRoutes& routes) {
+    const StageClock clock(plan_, "route");
+    int inside = 0;
+    for (int i = 0; i + 1 < static_cast<int>(plan_.picks.size()); ++i) {
+      if (++inside != problem_.place_region.capacity) continue;
+      inside = 0;
+      const int stop = plan_.picks[i].stop;
+      const Eigen::Vector3d& pose = plan_.stops[stop].pose;
+      Unloading unloading{i, routes.between(pose, problem_.goal), {}};
+      const bool returns = plan_.picks[i + 1].stop == stop;
+      if (returns) unloading.back = routes.between(problem_.goal, pose);
+      if (monitor_.stopped()) return false;
+      if (unloading.to_goal.outcome != Outcome::solved) return obstructed_route(routes, stop, -1);
+      if (returns && unloading.back.outcome != Outcome::solved)
+        return obstructed(
+            explain_route(problem_.goal, false, pose, plan_.regions[plan_.stops[stop].trays.front()].tray));
+      plan_.unloadings.push_back(std::move(unloading));
+    }
+    return true;
+  }
+
+  /// Where the base is when all parts of a stop are picked.
+  Eigen::Vector3d left_from(int stop) const {
+    for (const Unloading& unloading : plan_.unloadings) {
+      if (plan_.picks[unloading.after_pick].stop == stop && unloading.back.poses.empty()) return problem_.goal;
+    }
+    return plan_.stops[stop].pose;
+  }
+
   bool plan_legs(BaseRoutes& routes) {
     const StageClock clock(plan_, "route");
     std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> legs;
     Eigen::Vector3d at = problem_.start;
-    for (const Stop& stop : plan_.stops) {
-      legs.emplace_back(at, stop.pose);
-      at = stop.pose;
+    for (int stop = 0; stop < static_cast<int>(plan_.stops.size()); ++stop) {
+      legs.emplace_back(at, plan_.stops[stop].pose);
+      at = left_from(stop);
     }
     legs.emplace_back(at, problem_.goal);
     routes.prepare(legs);

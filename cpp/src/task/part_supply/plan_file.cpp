@@ -104,17 +104,24 @@ std::string stop_json(const PartSupplyProblem& problem, const Stop& stop) {
   return json_object(members);
 }
 
+std::string leg_json(const std::vector<Eigen::Vector3d>& poses, const verify::CheckedLegValues& values) {
+  return json_object({{"poses", json_array_of(poses, [](const Eigen::Vector3d& pose) { return json_numbers(pose); })},
+                      {"length", json_number(values.length)},
+                      {"turning", json_number(values.turning)},
+                      {"duration", json_number(values.duration)}});
+}
+
 std::string route_json(const PlanToCheck& check) {
   std::vector<std::string> legs;
-  for (std::size_t i = 0; i < check.route.size(); ++i) {
-    const verify::CheckedLegValues& values = check.leg_values[i];
-    legs.push_back(json_object(
-        {{"poses", json_array_of(check.route[i], [](const Eigen::Vector3d& pose) { return json_numbers(pose); })},
-         {"length", json_number(values.length)},
-         {"turning", json_number(values.turning)},
-         {"duration", json_number(values.duration)}}));
-  }
+  for (std::size_t i = 0; i < check.route.size(); ++i) legs.push_back(leg_json(check.route[i], check.leg_values[i]));
   return json_array(legs);
+}
+
+std::string unloading_json(const verify::CheckedUnloading& unloading) {
+  std::vector<JsonMember> members = {{"after_pick", std::to_string(unloading.after_pick)},
+                                     {"to_goal", leg_json(unloading.to_goal, unloading.to_goal_values)}};
+  if (!unloading.back.empty()) members.emplace_back("back", leg_json(unloading.back, unloading.back_values));
+  return json_object(members);
 }
 
 std::string motion_json(const verify::CheckedMotion& motion) {
@@ -187,24 +194,26 @@ std::string plan_json(const PartSupplyProblem& problem, const ReachDatabase& dat
                       const PlanFileOptions& options) {
   options.check();
   const PlanToCheck check = plan_to_check(problem, plan);
-  return json_object(
-      {{"format", json_quoted("mmgrasp-plan")},
-       {"version", std::to_string(kVersion)},
-       {"mmgrasp", json_quoted(MMGRASP_VERSION)},
-       {"outcome", json_quoted(to_string(plan.outcome))},
-       {"scenario", detail::scenario_json(problem, database, check, options)},
-       {"grid", grid_json(plan.grid)},
-       {"regions", json_array_of(plan.regions, [&](const BaseRegion& r) { return region_json(r, plan.grid); })},
-       {"intersections", intersections_json(problem, plan.intersections.robust)},
-       {"too_small_intersections", intersections_json(problem, plan.intersections.too_small)},
-       {"stops", json_array_of(plan.stops, [&](const Stop& stop) { return stop_json(problem, stop); })},
-       {"lower_bound", std::to_string(plan.lower_bound)},
-       {"proven_minimal", json_bool(plan.proven_minimal)},
-       {"route", route_json(check)},
-       {"picks", json_array_of(check.picks, pick_json)},
-       {"robustness_rate", json_number(plan.robustness_rate)},
-       {"obstructions", json_array_of(plan.obstructions, obstruction_json)},
-       {"premises", premises_json(problem, database, plan, check)}});
+  std::vector<JsonMember> members = {
+      {"format", json_quoted("mmgrasp-plan")},
+      {"version", std::to_string(kVersion)},
+      {"mmgrasp", json_quoted(MMGRASP_VERSION)},
+      {"outcome", json_quoted(to_string(plan.outcome))},
+      {"scenario", detail::scenario_json(problem, database, check, options)},
+      {"grid", grid_json(plan.grid)},
+      {"regions", json_array_of(plan.regions, [&](const BaseRegion& r) { return region_json(r, plan.grid); })},
+      {"intersections", intersections_json(problem, plan.intersections.robust)},
+      {"too_small_intersections", intersections_json(problem, plan.intersections.too_small)},
+      {"stops", json_array_of(plan.stops, [&](const Stop& stop) { return stop_json(problem, stop); })},
+      {"lower_bound", std::to_string(plan.lower_bound)},
+      {"proven_minimal", json_bool(plan.proven_minimal)},
+      {"route", route_json(check)},
+      {"picks", json_array_of(check.picks, pick_json)},
+      {"robustness_rate", json_number(plan.robustness_rate)},
+      {"obstructions", json_array_of(plan.obstructions, obstruction_json)},
+      {"premises", premises_json(problem, database, plan, check)}};
+  if (!check.unloadings.empty()) members.emplace_back("unloadings", json_array_of(check.unloadings, unloading_json));
+  return json_object(members);
 }
 
 void write_plan(const PartSupplyProblem& problem, const ReachDatabase& database, const PartSupplyPlan& plan,

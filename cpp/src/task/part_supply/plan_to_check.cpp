@@ -34,6 +34,12 @@ void set_hand(const Hand& hand, PlanToCheck& check) {
     }
   }
   check.openings = hand.openings;
+  check.payload = hand.payload;
+  if (hand.suction) {
+    const Suction& own = *hand.suction;
+    check.suction = {{}, own.max_gap, own.vacuum, own.friction, own.safety};
+    for (const SuctionCup& cup : own.cups) check.suction.cups.push_back({cup.position, cup.radius});
+  }
   if (hand.openings.empty() && hand.min_opening > 0) check.openings = {hand.min_opening, hand.max_opening};
 }
 
@@ -99,7 +105,7 @@ void set_trays(const PartSupplyProblem& problem, PlanToCheck& check) {
     if (farthest > 0) searched.max_distance = farthest;
     searched.shares_headings = tray.headings.empty();
     for (const Part& part : tray.parts) {
-      CheckedPart checked{{part.name, part.shapes, part.T_world_part}, tray.name, part.target, {}};
+      CheckedPart checked{{part.name, part.shapes, part.T_world_part}, tray.name, part.target, {}, part.mass};
       if (part.target) {
         for (const Grasp& grasp : part.grasps) checked.grasps.push_back({grasp.T_object_hand, grasp.opening});
       }
@@ -118,6 +124,7 @@ void set_task(const PartSupplyProblem& problem, PlanToCheck& check) {
   check.T_base_bin = problem.place_region.T_base_bin;
   check.bin_size = problem.place_region.size;
   check.drop_height = problem.place_region.drop_height;
+  check.capacity = problem.place_region.capacity;
 }
 
 std::vector<std::string> tray_names(const PartSupplyProblem& problem, const std::vector<TrayId>& trays) {
@@ -157,10 +164,19 @@ verify::CheckedPick checked_pick(const PartSupplyProblem& problem, const Pick& p
 }
 
 void set_motions(const PartSupplyProblem& problem, const PartSupplyPlan& plan, PlanToCheck& check) {
+  const auto values = [&](const BasePath& leg) {
+    const double seconds = base_path_duration(leg, problem.robot.base(), problem.robot.base_limits());
+    return verify::CheckedLegValues{leg.length, leg.turning, seconds};
+  };
   for (const BasePath& leg : plan.route) {
     check.route.push_back(leg.poses);
-    const double seconds = base_path_duration(leg, problem.robot.base(), problem.robot.base_limits());
-    check.leg_values.push_back({leg.length, leg.turning, seconds});
+    check.leg_values.push_back(values(leg));
+  }
+  for (const Unloading& unloading : plan.unloadings) {
+    verify::CheckedUnloading checked{unloading.after_pick, unloading.to_goal.poses, unloading.back.poses,
+                                     values(unloading.to_goal)};
+    if (!unloading.back.poses.empty()) checked.back_values = values(unloading.back);
+    check.unloadings.push_back(std::move(checked));
   }
   for (const Pick& pick : plan.picks) check.picks.push_back(checked_pick(problem, pick));
 }

@@ -59,6 +59,17 @@ std::string robot_json(const PartSupplyProblem& problem, const PlanToCheck& chec
                        })}});
 }
 
+std::string suction_json(const verify::CheckedSuction& suction) {
+  const auto cup_json = [](const verify::CheckedCup& cup) {
+    return json_object({{"xyz", json_numbers(cup.position)}, {"radius", json_number(cup.radius)}});
+  };
+  return json_object({{"cups", json_array_of(suction.cups, cup_json)},
+                      {"max_gap", json_number(suction.max_gap)},
+                      {"vacuum", json_number(suction.vacuum)},
+                      {"friction", json_number(suction.friction)},
+                      {"safety", json_number(suction.safety)}});
+}
+
 std::string gripper_json(const PlanToCheck& check, double closing_speed) {
   std::vector<JsonMember> members = {
       {"tool_link", json_quoted(check.tip_link)},
@@ -77,6 +88,8 @@ std::string gripper_json(const PlanToCheck& check, double closing_speed) {
                                })},
       {"finger_links", json_texts(check.finger_links)}};
   if (!check.openings.empty()) members.emplace_back("openings", json_numbers(check.openings));
+  if (!check.suction.cups.empty()) members.emplace_back("suction", suction_json(check.suction));
+  if (std::isfinite(check.payload)) members.emplace_back("payload", json_number(check.payload));
   return json_object(members);
 }
 
@@ -99,12 +112,14 @@ std::string part_json(const Part& part, const std::string& tray) {
                         {"opening", json_number(grasp.opening)},
                         {"quality", json_number(grasp.quality)}});
   };
-  return json_object({{"name", json_quoted(part.name)},
-                      {"tray", json_quoted(tray)},
-                      {"target", json_bool(part.target)},
-                      {"pose", json_pose(part.T_world_part)},
-                      {"shapes", json_shapes(part.shapes, "part " + part.name)},
-                      {"grasps", part.target ? json_array_of(part.grasps, grasp_json) : "[]"}});
+  std::vector<JsonMember> members = {{"name", json_quoted(part.name)},
+                                     {"tray", json_quoted(tray)},
+                                     {"target", json_bool(part.target)},
+                                     {"pose", json_pose(part.T_world_part)},
+                                     {"shapes", json_shapes(part.shapes, "part " + part.name)},
+                                     {"grasps", part.target ? json_array_of(part.grasps, grasp_json) : "[]"}};
+  if (part.mass > 0) members.emplace_back("mass", json_number(part.mass));
+  return json_object(members);
 }
 
 std::string parts_json(const PartSupplyProblem& problem) {
@@ -144,9 +159,11 @@ std::string others_json(const std::map<std::string, double>& joints) {
 }
 
 std::string place_json(const PlanToCheck& check) {
-  return json_object({{"pose", json_pose(check.T_base_bin)},
-                      {"size", json_numbers(check.bin_size)},
-                      {"drop_height", json_number(check.drop_height)}});
+  std::vector<JsonMember> members = {{"pose", json_pose(check.T_base_bin)},
+                                     {"size", json_numbers(check.bin_size)},
+                                     {"drop_height", json_number(check.drop_height)}};
+  if (check.capacity > 0) members.emplace_back("capacity", std::to_string(check.capacity));
+  return json_object(members);
 }
 
 std::string obstacle_json(const verify::CheckedBody& body) {

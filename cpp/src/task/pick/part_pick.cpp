@@ -33,7 +33,8 @@ PickProblem pick_of(const PartSupplyProblem& problem, const Eigen::Vector3d& bas
           part.grasps,
           problem.home,
           detail::places_over_bin(problem.place_region, T_world_root, part),
-          {options.approach_distance, options.lift_height, options.motion_time_limit, options.grid.ik_seeds, seed}};
+          {options.approach_distance, options.lift_height, options.motion_time_limit, options.grid.ik_seeds, seed},
+          part.mass};
 }
 
 }  // namespace

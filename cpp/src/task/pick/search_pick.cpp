@@ -5,10 +5,12 @@
 #include <cmath>
 
 #include "mmgrasp/core/detail/no_time_limit.hpp"
+#include "mmgrasp/grasp/detail/joined_surface.hpp"
 #include "mmgrasp/plan/motion.hpp"
 #include "mmgrasp/plan/straight_line.hpp"
 #include "mmgrasp/plan/time_parameterization.hpp"
 #include "mmgrasp/robot/ik.hpp"
+#include "task/pick/held_by_suction.hpp"
 #include "task/pick/joined_motions.hpp"
 #include "task/pick/pick_scene.hpp"
 #include "task/pick/release.hpp"
@@ -53,7 +55,10 @@ class PickPlanner {
         scene_(problem),
         T_world_object_(problem.world.objects().at(problem.object).T_world_object),
         monitor_(monitor),
-        seed_(problem.options.seed) {}
+        seed_(problem.options.seed) {
+    if (problem.gripper.suction)
+      centre_of_mass_ = joined_surface(problem.world.objects().at(problem.object).shapes).centre_of_mass;
+  }
 
   Pick run() {
     for (int round = 0; round < 2; ++round) {
@@ -198,9 +203,11 @@ class PickPlanner {
   bool finish(int grasp, double width, double opening, const MotionCheckers& checkers, const Paths& paths) {
     TimingOptions line;
     line.max_deviation = kLineDeviation;
+    bool held = true;
     const auto add = [&](MotionKind kind, bool holds, const JointPath& path, const TimingOptions& options) {
       CollisionChecker& checker = *checkers[pick_.motions.size()];
       JointTrajectory trajectory = time_parameterize_free(checker, path, options, kTimedStep, {monitor_.stop, {}});
+      if (holds && problem_.gripper.suction) held = slow_to_hold(checker.group(), load_at(grasp), trajectory) && held;
       pick_.motions.push_back({kind, holds ? width : opening, holds, std::move(trajectory)});
     };
     add(MotionKind::transit, false, paths.transit, {});
@@ -209,6 +216,10 @@ class PickPlanner {
     if (!problem_.places.empty()) {
       add(MotionKind::transfer, true, paths.transfer, {});
       add(MotionKind::retreat, false, paths.retreat, {});
+    }
+    if (!held) {
+      pick_.motions.clear();
+      return fell(kLift);
     }
     join_motions(problem_.arm.wraps(), problem_.home, pick_.motions);
     const std::array<Stage, 5> stages = {kTransit, kApproach, kLift, kTransfer, kRetreat};
@@ -220,6 +231,12 @@ class PickPlanner {
     pick_.outcome = Outcome::solved;
     pick_.grasp = grasp;
     return true;
+  }
+
+  SuctionLoad load_at(int grasp) const {
+    const Hand& hand = problem_.gripper;
+    const Eigen::Vector3d centre = problem_.grasps[grasp].T_object_hand.inverse() * centre_of_mass_;
+    return {*hand.suction, hand.approach, problem_.mass, centre};
   }
 
   /// The check before return: on the trajectory itself, between its samples too.
@@ -242,6 +259,7 @@ class PickPlanner {
   const ReachDatabase& database_;
   PickScene scene_;
   Pose T_world_object_;
+  Eigen::Vector3d centre_of_mass_ = Eigen::Vector3d::Zero();  ///< The object's, for cups.
   const Monitor& monitor_;
   Pick pick_;
   unsigned seed_;

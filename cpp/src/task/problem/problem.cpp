@@ -19,6 +19,7 @@ void check_part(const Part& part, const std::string& tray) {
     check_shape(part.shapes[i].shape, field + " shape " + std::to_string(i));
   }
   checked_pose(part.T_world_part.matrix(), field + " pose");
+  require_within(part.mass, 0, 1e6, field + " mass", "kg");
   for (std::size_t i = 0; i < part.grasps.size(); ++i) {
     const std::string grasp = field + " grasp " + std::to_string(i);
     checked_pose(part.grasps[i].T_object_hand.matrix(), grasp + " pose");
@@ -26,6 +27,15 @@ void check_part(const Part& part, const std::string& tray) {
     require(part.grasps[i].posture.empty(), grasp + " posture",
             std::to_string(part.grasps[i].posture.size()) + " numbers", "must be empty: fingers pick by their opening");
   }
+}
+
+/// What hand and arm may carry; cups must know what they lift.
+void check_load(const Hand& hand, const Part& part) {
+  if (!part.target) return;
+  const std::string field = "part '" + part.name + "' mass";
+  require(part.mass <= hand.payload, field, part.mass,
+          "must not exceed gripper.payload (" + std::to_string(hand.payload) + " kg)");
+  require(!hand.suction || part.mass > 0, field, part.mass, "must be positive: suction cups hold by force");
 }
 
 void check_trays(const PartSupplyProblem& problem) {
@@ -45,6 +55,7 @@ void check_trays(const PartSupplyProblem& problem) {
       require(!problem.world.has(part.name), "part name", "'" + part.name + "'",
               "is in use for an object of the scene");
       check_part(part, tray.name);
+      check_load(problem.gripper, part);
       for (const Grasp& grasp : part.grasps) {
         require(grasp.opening <= problem.gripper.max_opening + 1e-9, "part '" + part.name + "' grasp width",
                 grasp.opening,
@@ -100,6 +111,7 @@ void PartSupplyProblem::check() const {
   checked_pose(place_region.T_base_bin.matrix(), "place_region.pose");
   for (double length : place_region.size) require_length(length, "place_region.size");
   require_not_negative(place_region.drop_height, "place_region.drop_height");
+  require_within(place_region.capacity, 0, 1e6, "place_region.capacity", "parts (0: all)");
   require(world.attached().empty(), "world", "an attached object", "must hold nothing attached at the start");
   check_arrival_covariance(arrival_covariance);
   require(arrival_covariance.isZero(0) || options.robustness_samples > 0, "robustness_samples", 0,

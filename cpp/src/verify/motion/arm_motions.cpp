@@ -9,6 +9,7 @@
 #include "verify/motion/hermite.hpp"
 #include "verify/motion/motion_checks.hpp"
 #include "verify/motion/motion_limits.hpp"
+#include "verify/motion/payload.hpp"
 #include "verify/motion/tool_path.hpp"
 
 namespace mmgrasp::verify::detail {
@@ -165,7 +166,13 @@ class PickCheck {
     walk(kApproach);
     const Eigen::VectorXd& at_grasp = motion(kApproach).positions.back();
     judge_.hold(body_, T_tip_part_);
-    hand_.check_grip(at_grasp, grasp_->opening, context_.pick_name(index_));
+    if (plan_.suction.cups.empty()) {
+      hand_.check_grip(at_grasp, grasp_->opening, context_.pick_name(index_));
+    } else {
+      const Eigen::Vector3d centre = T_tip_part_ * centre_of_mass(part_->body.shapes);
+      for (const int kind : {kLift, kTransfer})
+        check_cups_hold(context_, judge_, motion(kind), part_->mass, centre, name(kind), faults_);
+    }
     hand_.check_fingers(at_grasp, motion(kApproach).opening, grasp_->opening,
                         context_.pick_name(index_) + ", fingers closing");
     walk(kLift);

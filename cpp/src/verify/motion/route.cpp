@@ -77,6 +77,8 @@ class RouteCheck {
     if (!plan_.leg_values.empty() && plan_.leg_values.size() != plan_.route.size()) {
       faults_.push_back({"route-values", "route", "length, turning and duration must be given for each leg"});
     }
+    check_capacity();
+    for (const CheckedUnloading& unloading : plan_.unloadings) check_unloading(unloading);
     for (std::size_t leg = 0; leg < plan_.route.size(); ++leg) {
       context_.monitor.report("route", static_cast<double>(leg) / static_cast<double>(plan_.route.size()));
       if (context_.monitor.stopped()) return;
@@ -87,36 +89,95 @@ class RouteCheck {
  private:
   static std::string name(std::size_t leg) { return "route leg " + std::to_string(leg); }
 
+  /// "capacity": never more parts in the bin than it takes; "unloading": at picks in order, not after the last one.
+  void check_capacity() {
+    int emptied = -1;  // the pick after which it was emptied last
+    const int last = static_cast<int>(plan_.picks.size()) - 1;
+    const auto count = [&](int up_to, const std::string& where) {
+      if (plan_.capacity <= 0 || up_to - emptied <= plan_.capacity) return;
+      faults_.push_back(
+          {"capacity", where,
+           std::to_string(up_to - emptied) + " parts are in the bin, which takes " + std::to_string(plan_.capacity)});
+    };
+    for (const CheckedUnloading& unloading : plan_.unloadings) {
+      if (unloading.after_pick <= emptied || unloading.after_pick >= last) {
+        faults_.push_back({"unloading", "unloading after pick " + std::to_string(unloading.after_pick),
+                           "must come after a pick later than the one before, and before the last"});
+        return;
+      }
+      count(unloading.after_pick, "unloading after pick " + std::to_string(unloading.after_pick));
+      emptied = unloading.after_pick;
+    }
+    count(last, "goal");
+  }
+
+  /// To the goal, and back where the next pick is at the same stop.
+  void check_unloading(const CheckedUnloading& unloading) {
+    const int pick = unloading.after_pick;
+    if (pick < 0 || pick + 1 >= static_cast<int>(plan_.picks.size())) return;  // said already
+    const int stop = plan_.picks[pick].stop;
+    if (stop < 0 || stop >= static_cast<int>(plan_.stops.size())) return;
+    const std::string where = "unloading after pick " + std::to_string(pick);
+    for (std::size_t part = 0; part < plan_.parts.size(); ++part) {
+      const int by = context_.picked_by[part];
+      judge_.set_present(context_.body_of_part(static_cast<int>(part)), by < 0 || by > pick);
+    }
+    check_drive(unloading.to_goal, plan_.stops[stop].pose, plan_.goal, &unloading.to_goal_values,
+                where + ", to the goal");
+    const bool returns = plan_.picks[pick + 1].stop == stop;
+    if (returns) {
+      check_drive(unloading.back, plan_.goal, plan_.stops[stop].pose, &unloading.back_values, where + ", back");
+    } else if (!unloading.back.empty()) {
+      faults_.push_back({"unloading", where, "drives back to a stop at which nothing is left to pick"});
+    }
+  }
+
+  /// Where the base leaves a stop for the next: from the stop, or from the goal where the bin was emptied last.
+  Eigen::Vector3d left_from(std::size_t stop) const {
+    for (const CheckedUnloading& unloading : plan_.unloadings) {
+      const int pick = unloading.after_pick;
+      if (pick < 0 || pick + 1 >= static_cast<int>(plan_.picks.size())) continue;
+      const bool last_here = plan_.picks[pick + 1].stop != plan_.picks[pick].stop;
+      if (last_here && plan_.picks[pick].stop == static_cast<int>(stop)) return plan_.goal;
+    }
+    return stop_pose(stop);
+  }
+
   void check_leg(std::size_t leg) {
-    const std::vector<Eigen::Vector3d>& poses = plan_.route[leg];
+    const Eigen::Vector3d from = leg == 0 ? plan_.start : left_from(leg - 1);
+    const Eigen::Vector3d to = leg + 1 >= plan_.route.size() ? plan_.goal : stop_pose(leg);
+    set_parts_on_leg(leg);
+    check_drive(plan_.route[leg], from, to, leg < plan_.leg_values.size() ? &plan_.leg_values[leg] : nullptr,
+                name(leg));
+  }
+
+  /// One drive, with the parts in the scene that are there; `values`: what is said about it, or nothing.
+  void check_drive(const std::vector<Eigen::Vector3d>& poses, const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+                   const CheckedLegValues* values, const std::string& where) {
     const bool finite = std::all_of(poses.begin(), poses.end(), [](const Eigen::Vector3d& p) {
       return p.allFinite() && p.cwiseAbs().maxCoeff() <= kLargest;
     });
     if (poses.empty() || !finite) {
-      faults_.push_back({"route-ends", name(leg), "must hold at least one pose, all finite and at most 1e6"});
+      faults_.push_back({"route-ends", where, "must hold at least one pose, all finite and at most 1e6"});
       return;
     }
-    const Eigen::Vector3d from = leg == 0 ? plan_.start : stop_pose(leg - 1);
-    const Eigen::Vector3d to = leg + 1 >= plan_.route.size() ? plan_.goal : stop_pose(leg);
-    check_end(poses.front(), from, name(leg), "starts");
-    check_end(poses.back(), to, name(leg), "ends");
+    check_end(poses.front(), from, where, "starts");
+    check_end(poses.back(), to, where, "ends");
     for (std::size_t i = 0; i + 1 < poses.size(); ++i) {
       if (driveable(plan_.robot.base, poses[i], poses[i + 1])) continue;
-      faults_.push_back({"route-not-driveable", name(leg) + ", step " + std::to_string(i),
+      faults_.push_back({"route-not-driveable", where + ", step " + std::to_string(i),
                          std::string("a ") + to_string(plan_.robot.base) + " base cannot go straight from " +
                              text(poses[i]) + " to " + text(poses[i + 1])});
       break;
     }
-    const bool stated = leg < plan_.leg_values.size();
-    if (stated && !values_hold(plan_.leg_values[leg], poses, plan_.robot.base, plan_.robot.base_limits)) {
-      faults_.push_back({"route-values", name(leg),
-                         "length, turning or duration are not those of its poses at the limits of the base"});
+    if (values != nullptr && !values_hold(*values, poses, plan_.robot.base, plan_.robot.base_limits)) {
+      faults_.push_back(
+          {"route-values", where, "length, turning or duration are not those of its poses at the limits of the base"});
     }
     for (const Eigen::Vector3d& pose : poses) {
-      if (!check_workspace(plan_, pose, 0, name(leg), faults_)) break;
+      if (!check_workspace(plan_, pose, 0, where, faults_)) break;
     }
-    set_parts_on_leg(leg);
-    check_free(poses, name(leg));
+    check_free(poses, where);
   }
 
   Eigen::Vector3d stop_pose(std::size_t stop) const {

@@ -51,6 +51,7 @@ Kinematics::Element Kinematics::make_element(const RobotModel& robot, const Mode
 }
 
 double ArmSetup::share_open(double opening) const {
+  if (openings.back() <= 0) return 0;  // no fingers
   const std::size_t steps = openings.size() - 1;
   std::size_t i = 1;
   while (i < steps && openings[i] < opening) ++i;

@@ -32,7 +32,7 @@ void bind_records(py::module_& m) {
                          "One suction cup of a hand: its rim is a circle in the plane through the tool frame's origin, "
                          "across the approach.")
       .def(py::init([](const ArrayLike& position, double radius) {
-             return SuctionCup{vector3_argument(position, "position"), radius};
+             return SuctionCup{vector3_argument(position, "position"), finite_argument(radius, "radius")};
            }),
            py::arg("position"), py::arg("radius"), "Middle of the rim in the tool frame (3,) and its radius [m].")
       .def_readonly("position", &SuctionCup::position, "Middle of the rim in the tool frame (3,) [m].")

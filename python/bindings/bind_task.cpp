@@ -99,7 +99,7 @@ void bind_problem(py::module_& m) {
                          target,
                          std::move(grasps),
                          grasps_too_wide,
-                         mass};
+                         finite_argument(mass, "mass")};
            }),
            py::arg("name"), py::arg("shapes"), py::arg("T_world_part"), py::arg("grasps") = std::vector<Grasp>{},
            py::kw_only(), py::arg("target") = true, py::arg("grasps_too_wide") = 0, py::arg("mass") = 0.0,

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <map>
 
+#include "mmgrasp/core/limits.hpp"
+
 namespace mmgrasp::python {
 namespace {
 

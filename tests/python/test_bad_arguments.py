@@ -162,7 +162,7 @@ def test_bad_arrays_are_refused_by_name(argument: Argument) -> None:
         except (mg.Error, ValueError, TypeError) as error:
             message = str(error)
             # What does not fit together is named by the name of one of the two.
-            fits = {"one column more": ["velocity_limits"], "no entries": ["drive_times"]}.get(what, [])
+            fits = {"one column more": ["velocity_limits", "drive_times"], "no entries": ["drive_times"]}.get(what, [])
             names = (argument.name, *fits)
             assert any(name in message for name in names), f"{what}: {message}"
             if isinstance(value, np.ndarray) and what in ("nan", "inf", "-inf"):

@@ -160,7 +160,7 @@ def test_a_room_from_a_map_is_planned_as_one_of_boxes(small: dict[str, Any], wri
     [
         ({"map": "room.yaml"}, "height is missing"),
         ({"map": "room.yaml", "height": 1.0, "box": [1, 1, 1]}, "a map has no other shape"),
-        ({"box": [1, 1, 1], "height": 1.0}, "only a map has it"),
+        ({"box": [1, 1, 1], "height": 1.0}, "only a map or a floor_plan has it"),
         ({"map": "room.yaml", "height": 1.0, "unknown": "maybe"}, "must be one of occupied, free"),
         ({"map": "nowhere.yaml", "height": 1.0}, "no such file"),
     ],

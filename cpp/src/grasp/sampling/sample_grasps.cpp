@@ -15,7 +15,7 @@ namespace {
 
 using detail::ContactPair;
 using detail::ContactPairs;
-using detail::GraspCandidate;
+using detail::SampledGrasp;
 
 constexpr double kMostCandidates = 1e6;
 
@@ -67,7 +67,7 @@ class Judge {
 };
 
 void add_grasps(int index, const ContactPair& pair, const Hand& hand, const GraspSamplerOptions& options,
-                const Judge& judge, std::vector<GraspCandidate>& candidates) {
+                const Judge& judge, std::vector<SampledGrasp>& candidates) {
   const Eigen::Vector3d side = pair.axis.cross(pair.first_approach);
   for (int i = 0; i < options.approaches; ++i) {
     const double angle = detail::kTwoPi * i / options.approaches;
@@ -75,7 +75,7 @@ void add_grasps(int index, const ContactPair& pair, const Hand& hand, const Gras
     // The pads are alike, the arm is not: the hand turned by half a turn about the approach is a grasp of its own.
     for (const double flip : {1.0, -1.0}) {
       const Eigen::Vector3d closing = flip * pair.axis;
-      GraspCandidate candidate;
+      SampledGrasp candidate;
       Grasp& grasp = candidate.grasp;
       grasp.T_object_hand.linear() = detail::align_axes(hand.approach, hand.closing, approach, closing);
       grasp.T_object_hand.translation() = pair.middle - options.standoff * approach;
@@ -113,7 +113,7 @@ SampledGrasps sample_grasps(const std::vector<LinkShape>& object, const Hand& ha
   if (!pairs) pairs = detail::surface_pairs(object, options);
 
   SampledGrasps sampled;
-  std::vector<GraspCandidate> candidates;
+  std::vector<SampledGrasp> candidates;
   const Judge judge(*pairs, hand);
   for (std::size_t i = 0; i < pairs->pairs.size(); ++i) {
     const ContactPair& pair = pairs->pairs[i];

@@ -146,7 +146,7 @@ class SuctionSampler {
   }
 
   void add(const Pose& T, int turn, double holding, double seal) {
-    detail::GraspCandidate candidate;
+    detail::SampledGrasp candidate;
     candidate.grasp.T_object_hand = T;
     candidate.grasp.set_quality(
         {{"holding", std::clamp(holding, 0.0, 1.0), 0.5}, {"seal", std::clamp(seal, 0.0, 1.0), 0.5}});
@@ -161,7 +161,7 @@ class SuctionSampler {
   double mass_;
   const SuctionSamplerOptions& options_;
   SampledSuctionGrasps sampled_;
-  std::vector<detail::GraspCandidate> candidates_;
+  std::vector<detail::SampledGrasp> candidates_;
 };
 
 }  // namespace

@@ -24,7 +24,7 @@ int direction_bin(const Eigen::Vector3d& direction) {
   return bin;
 }
 
-std::vector<Grasp> keep_spread(const std::vector<GraspCandidate>& candidates, int most) {
+std::vector<Grasp> keep_spread(const std::vector<SampledGrasp>& candidates, int most) {
   std::vector<std::size_t> order(candidates.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {

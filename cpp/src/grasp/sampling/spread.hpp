@@ -8,7 +8,7 @@
 namespace mmgrasp::detail {
 
 /// A grasp to choose from.
-struct GraspCandidate {
+struct SampledGrasp {
   Grasp grasp;
   int bin = 0;  ///< Its direction, coarsely: grasps of one bin are alike.
 };
@@ -21,6 +21,6 @@ Eigen::Matrix3d align_axes(const Eigen::Vector3d& from_a, const Eigen::Vector3d&
 int direction_bin(const Eigen::Vector3d& direction);
 
 /// The best of every bin first, then the second best of every bin, and so on, up to `most`; sorted by quality.
-std::vector<Grasp> keep_spread(const std::vector<GraspCandidate>& candidates, int most);
+std::vector<Grasp> keep_spread(const std::vector<SampledGrasp>& candidates, int most);
 
 }  // namespace mmgrasp::detail

@@ -85,6 +85,7 @@ class RrtStarMg {
  private:
   /// Lines 11-26 for one sample.
   void sample(int side) {
+    if (incumbent_.in_trees()) restore_incumbent();
     const TreeSampler::Sample again = sampler_.draw_reassigned(rng_, side);
     if (again.configuration >= 0) {  // Lines 19, 20.
       connect(growth_.extend_tree(GraspTrees::tree(again.grasp, side), again.configuration));
@@ -178,7 +179,8 @@ class RrtStarMg {
   }
 
   /// Rewiring along an edge that the final check refuses breaks the path that passed it, and repair may find none that
-  /// is as good: that path is put back, for shortcuts need one, and only its neighbourhood is sampled.
+  /// is as good: that path is put back, for shortcuts need one, and only its neighbourhood is sampled. Between samples
+  /// alone: whoever grows a tree holds references into it.
   void restore_incumbent() {
     const int grasp = incumbent_.grasp;
     if (grasp >= informed_.grasps()) return;  // A straight line: nothing is shorter.
@@ -192,14 +194,13 @@ class RrtStarMg {
   void update_incumbent(int grasp) {
     for (;;) {
       const TreeConnections::BestPath path = connections_.update(grasp);
-      if (!(path.cost < incumbent_.cost_to_beat())) break;
+      if (!(path.cost < incumbent_.cost_to_beat())) return;
       if (!accept(grasp, path.connection)) continue;
       incumbent_.grasp = grasp;
       prune_and_reassign(incumbent_, trees_, informed_, sampler_);
       if (incumbent_.cost <= options_.goal_cost) return;
       shortcutting_.skip_vertices(grasp);
     }
-    if (grasp == incumbent_.grasp) restore_incumbent();
   }
 
   /// The final check of a path, which becomes the incumbent when it passes. Otherwise the search stepped over a thin

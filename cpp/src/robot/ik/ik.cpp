@@ -172,8 +172,8 @@ void IkOptions::check() const {
   require_not_negative(restarts, "ik.restarts", "", detail::kInfinity);
   require_positive(time_limit, "ik.time_limit", "s", detail::kInfinity);
   for (std::size_t i = 0; i < joint_weights.size(); ++i)
-    if (!(joint_weights[i] > 0 && joint_weights[i] <= kLargestLength))
-      require_positive(joint_weights[i], "ik.joint_weights[" + std::to_string(i) + "]");
+    if (!(joint_weights[i] > 0 && joint_weights[i] <= kLargestNumber))
+      require_positive(joint_weights[i], "ik.joint_weights[" + std::to_string(i) + "]", "", kLargestNumber);
   for (std::size_t i = 0; i < objectives.size(); ++i)
     if (!objectives[i]) throw InvalidInput("ik.objectives[" + std::to_string(i) + "]: must not be empty");
   require_not_negative(objective_iterations, "ik.objective_iterations", "", detail::kInfinity);

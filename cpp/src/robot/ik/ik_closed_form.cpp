@@ -58,7 +58,7 @@ struct Positions {
 };
 
 /// The same angles; `free` is set when they stand for any.
-Angles noted(const Angles& angles, bool& free) {
+AngleSolutions noted(const AngleSolutions& angles, bool& free) {
   free = free || angles.free;
   return angles;
 }

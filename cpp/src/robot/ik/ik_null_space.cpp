@@ -124,7 +124,8 @@ Eigen::VectorXd project_onto_null_space(const Matrix6Xd& J, const Eigen::VectorX
   const std::string rule = "must be " + std::to_string(n) + ", the Jacobian's columns";
   require(static_cast<std::size_t>(xi.size()) == n, "xi length", static_cast<double>(xi.size()), rule);
   require(weights.empty() || weights.size() == n, "weights length", static_cast<double>(weights.size()), rule);
-  for (std::size_t i = 0; i < weights.size(); ++i) require_positive(weights[i], "weights[" + std::to_string(i) + "]");
+  for (std::size_t i = 0; i < weights.size(); ++i)
+    require_positive(weights[i], "weights[" + std::to_string(i) + "]", "", kLargestNumber);
   return detail::null_space_part(J, xi, weights, std::vector<bool>(n, false));
 }
 

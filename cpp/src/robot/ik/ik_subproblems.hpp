@@ -13,7 +13,7 @@ namespace mmgrasp::detail {
 /// vector to another, to a distance or to a plane (after Paden and Kahan). Axes are unit vectors.
 
 /// Up to two angles. `free` says that every angle solves the problem; the one given is 0.
-struct Angles {
+struct AngleSolutions {
   std::array<double, 2> value{};
   int count = 0;
   bool free = false;
@@ -44,9 +44,9 @@ inline Eigen::Vector3d turned(const Eigen::Vector3d& axis, double angle, const E
 
 /// a cos(angle) + b sin(angle) = c. What misses a solution by a little (geometry that is only nearly special, poses at
 /// the border of reach) gives the nearest angle: Newton's method decides about it afterwards.
-inline Angles solve_cosine(double a, double b, double c) {
+inline AngleSolutions solve_cosine(double a, double b, double c) {
   constexpr double kSlack = 1e-3, kDegenerate = 1e-9;
-  Angles angles;
+  AngleSolutions angles;
   const double r = std::hypot(a, b);
   if (r < kDegenerate) {
     if (std::abs(c) < 1e3 * kDegenerate) {
@@ -77,14 +77,14 @@ inline double angle_onto(const Eigen::Vector3d& axis, const Eigen::Vector3d& u, 
 }
 
 /// k . R(axis, angle) u = d
-inline Angles angles_to_plane(const Eigen::Vector3d& axis, const Eigen::Vector3d& k, const Eigen::Vector3d& u,
+inline AngleSolutions angles_to_plane(const Eigen::Vector3d& axis, const Eigen::Vector3d& k, const Eigen::Vector3d& u,
                               double d) {
   const double along = k.dot(axis) * axis.dot(u);
   return solve_cosine(k.dot(u) - along, k.dot(axis.cross(u)), d - along);
 }
 
 /// |R(axis, angle) u - v| = d
-inline Angles angles_to_distance(const Eigen::Vector3d& axis, const Eigen::Vector3d& u, const Eigen::Vector3d& v,
+inline AngleSolutions angles_to_distance(const Eigen::Vector3d& axis, const Eigen::Vector3d& u, const Eigen::Vector3d& v,
                                  double d) {
   return angles_to_plane(axis, v, u, 0.5 * (u.squaredNorm() + v.squaredNorm() - d * d));
 }

@@ -27,7 +27,8 @@ Eigen::VectorXd JointWeights::of(const JointGroup& group) const {
   if (weights.size() == 0) return {};
   require(weights.size() == group.size(), "joint_weights: number of them", weights.size(),
           "must be " + std::to_string(group.size()) + ", one per joint of group '" + group.name() + "'");
-  for (Eigen::Index i = 0; i < weights.size(); ++i) require_positive(weights[i], "joint_weights of '" + names[i] + "'");
+  for (Eigen::Index i = 0; i < weights.size(); ++i)
+    require_positive(weights[i], "joint_weights of '" + names[i] + "'", "", kLargestNumber);
   return (weights.array() == 1).all() ? Eigen::VectorXd() : weights;
 }
 

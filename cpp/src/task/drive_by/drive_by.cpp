@@ -17,10 +17,10 @@ namespace {
 
 using detail::ConfigurationSequence;
 using detail::DriveByStep;
-using detail::GoalConfiguration;
 using detail::GoalConfigurations;
 using detail::GraspAssignment;
 using detail::SolveSettings;
+using detail::StepConfiguration;
 using Eigen::VectorXd;
 
 constexpr int kShortBudget = 80;       // iterations of a solve in the first round
@@ -29,7 +29,7 @@ constexpr std::size_t kMoreSeeds = 2;  // sequences tried of each assignment onc
 /// What blocks most of the configurations that reach a task: "; in 12 of 30 that do 'hand' touches 'table'".
 std::string most_frequent_contact(CollisionChecker& checker, const GoalConfigurations& in_reach) {
   std::map<std::string, std::size_t> count;
-  for (const GoalConfiguration& configuration : in_reach)
+  for (const StepConfiguration& configuration : in_reach)
     for (const Contact& contact : checker.contacts(configuration.q)) ++count[describe(contact)];
   if (count.empty()) return {};
   const auto most =
@@ -147,7 +147,7 @@ class DriveBy {
 
   static std::string name(const GraspAssignment& assignment) {
     std::string text;
-    for (const GoalConfiguration& configuration : assignment.sequences.front())
+    for (const StepConfiguration& configuration : assignment.sequences.front())
       text += (text.empty() ? "" : ", ") + std::to_string(configuration.candidate);
     return "[" + text + "]";
   }

@@ -45,7 +45,7 @@ double sequence_time(const JointGroup& group, const ConfigurationSequence& seque
                      const VectorXd& goal) {
   double time = 0;
   VectorXd here = start;
-  for (const GoalConfiguration& configuration : sequence) {
+  for (const StepConfiguration& configuration : sequence) {
     time += travel_time(group, here, configuration.q);
     here = configuration.q;
   }
@@ -59,7 +59,7 @@ std::vector<GoalConfigurations> only(const std::vector<DriveByStep>& steps, std:
     if (steps[i].task != task) continue;
     auto& list = goals[i];
     list.erase(
-        std::remove_if(list.begin(), list.end(), [&](const GoalConfiguration& s) { return s.candidate != candidate; }),
+        std::remove_if(list.begin(), list.end(), [&](const StepConfiguration& s) { return s.candidate != candidate; }),
         list.end());
   }
   return goals;

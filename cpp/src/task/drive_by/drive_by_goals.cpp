@@ -113,7 +113,7 @@ GoalConfigurations find_goal_configurations(const JointGroup& group, CollisionCh
     found[index].candidate = candidate;
   };
   const auto any = [&] {
-    return std::any_of(found.begin(), found.end(), [](const GoalConfiguration& s) { return s.q.size() > 0; });
+    return std::any_of(found.begin(), found.end(), [](const StepConfiguration& s) { return s.q.size() > 0; });
   };
   for (int round = 0; round < kRounds && !any() && !monitor.stopped(); ++round, first += each) {
     found.assign(count, {});
@@ -127,7 +127,7 @@ GoalConfigurations find_goal_configurations(const JointGroup& group, CollisionCh
   std::sort(order.begin(), order.end());
   GoalConfigurations result;
   for (const auto& [time, i] : order) {
-    const bool twin = std::any_of(result.begin(), result.end(), [&](const GoalConfiguration& s) {
+    const bool twin = std::any_of(result.begin(), result.end(), [&](const StepConfiguration& s) {
       return s.candidate == found[i].candidate && (s.q - found[i].q).cwiseAbs().maxCoeff() < kSameConfiguration;
     });
     if (!twin) result.push_back(found[i]);
@@ -142,7 +142,7 @@ GoalConfigurations follow_goal_configurations(const JointGroup& group, Collision
     return checker ? checker->rejection(q) : Rejection::none;
   };
   GoalConfigurations result;
-  for (const GoalConfiguration& configuration : before) {
+  for (const StepConfiguration& configuration : before) {
     const Pose& T = step.candidates[configuration.candidate];
     const IkResult r = solve_ik(group, T, configuration.q, goal_ik(), valid, {monitor.stop, {}});
     if (r.outcome == Outcome::solved) result.push_back({unwound(group, configuration.q, r.q), configuration.candidate});

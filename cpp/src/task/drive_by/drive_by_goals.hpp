@@ -8,12 +8,12 @@
 namespace mmgrasp::detail {
 
 /// A configuration of base and arm in which the tool is where a task wants it.
-struct GoalConfiguration {
+struct StepConfiguration {
   Eigen::VectorXd q;
   int candidate = 0;  ///< Index into the task's candidates.
 };
-using GoalConfigurations = std::vector<GoalConfiguration>;     ///< Alternatives for one step.
-using ConfigurationSequence = std::vector<GoalConfiguration>;  ///< One for each step.
+using GoalConfigurations = std::vector<StepConfiguration>;     ///< Alternatives for one step.
+using ConfigurationSequence = std::vector<StepConfiguration>;  ///< One for each step.
 
 /// Time between two configurations by the limits alone [s]: driving and turning, or the slowest joint.
 double travel_time(const JointGroup& group, const Eigen::VectorXd& from, const Eigen::VectorXd& to);

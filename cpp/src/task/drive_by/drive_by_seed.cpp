@@ -94,7 +94,7 @@ SeededProblem DriveBySeeds::make(const ConfigurationSequence& sequence, int wayp
 
 std::vector<VectorXd> DriveBySeeds::via_points(const ConfigurationSequence& sequence) const {
   std::vector<VectorXd> points{start_};
-  for (const GoalConfiguration& configuration : sequence) points.push_back(configuration.q);
+  for (const StepConfiguration& configuration : sequence) points.push_back(configuration.q);
   points.push_back(goal_near(goal_, points.back()));
   return points;
 }

@@ -20,6 +20,7 @@ UNBOUNDED = {
     "online_limit",
     "tie_time_limit",
     "farthest",
+    "payload",
 }
 
 

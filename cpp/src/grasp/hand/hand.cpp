@@ -107,7 +107,7 @@ void Hand::check() const {
   const double dot = approach.dot(closing);
   require(std::abs(dot) <= kUnitTolerance, "hand.approach . hand.closing", dot,
           "the two axes must be orthogonal within 1e-6");
-  require(payload > 0, "hand.payload", payload, "must be positive [kg]");
+  if (!std::isinf(payload) || payload < 0) require_positive(payload, "hand.payload", "kg");  // infinite: none is stated
   if (suction) return check_suction(*this);
   require_length(max_opening, "hand.max_opening");
   require(min_opening >= 0 && min_opening < max_opening, "hand.min_opening", min_opening,

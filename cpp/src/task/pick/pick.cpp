@@ -52,8 +52,8 @@ void PickProblem::check() const {
     require(grasps[i].opening >= 0 && grasps[i].opening <= gripper.max_opening + 1e-9, field + " opening",
             grasps[i].opening, "must lie in [0, gripper.max_opening = " + std::to_string(gripper.max_opening) + "]");
   }
-  require(std::isfinite(mass) && mass >= 0 && mass <= gripper.payload, "mass", mass,
-          "must be from 0 to gripper.payload [kg]");
+  require_not_negative(mass, "mass", "kg");
+  require(mass <= gripper.payload, "mass", mass, "must be from 0 to gripper.payload [kg]");
   require(!gripper.suction || mass > 0, "mass", mass, "must be positive: suction cups hold by force [kg]");
   for (std::size_t i = 0; i < places.size(); ++i) checked_pose(places[i].matrix(), "places[" + std::to_string(i) + "]");
 }

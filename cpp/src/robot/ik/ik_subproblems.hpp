@@ -78,14 +78,14 @@ inline double angle_onto(const Eigen::Vector3d& axis, const Eigen::Vector3d& u, 
 
 /// k . R(axis, angle) u = d
 inline AngleSolutions angles_to_plane(const Eigen::Vector3d& axis, const Eigen::Vector3d& k, const Eigen::Vector3d& u,
-                              double d) {
+                                      double d) {
   const double along = k.dot(axis) * axis.dot(u);
   return solve_cosine(k.dot(u) - along, k.dot(axis.cross(u)), d - along);
 }
 
 /// |R(axis, angle) u - v| = d
-inline AngleSolutions angles_to_distance(const Eigen::Vector3d& axis, const Eigen::Vector3d& u, const Eigen::Vector3d& v,
-                                 double d) {
+inline AngleSolutions angles_to_distance(const Eigen::Vector3d& axis, const Eigen::Vector3d& u,
+                                         const Eigen::Vector3d& v, double d) {
   return angles_to_plane(axis, v, u, 0.5 * (u.squaredNorm() + v.squaredNorm() - d * d));
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numeric>
 #include <string>
 
@@ -223,7 +224,7 @@ void SetCoverProblem::check() const {
   require(costs.size() == sets.size(), "costs", static_cast<double>(costs.size()),
           "must have one entry per set (" + std::to_string(sets.size()) + ")");
   for (std::size_t s = 0; s < costs.size(); ++s) {
-    require_positive(costs[s], "costs[" + std::to_string(s) + "]", "", kLargestNumber);
+    require_positive(costs[s], "costs[" + std::to_string(s) + "]", "", std::numeric_limits<double>::max());
   }
   const auto [least, most] = std::minmax_element(costs.begin(), costs.end());
   require(*most <= kMostTimesLeast * *least, "costs[" + std::to_string(most - costs.begin()) + "]", *most,

@@ -127,9 +127,9 @@ TEST(Pipe, BadPipesAreRefusedByNameValueAndRule) {
   expect_refused(bad, "sections[4]", "same nodes as sections[2]");
   bad = good;
   bad.diameters[1] = 0;
-  expect_refused(bad, "diameters[1] = 0", "positive");
+  expect_refused(bad, "diameters[1] = 0", "> 0");
   bad.diameters[1] = std::numeric_limits<double>::infinity();
-  expect_refused(bad, "diameters[1]", "positive");
+  expect_refused(bad, "diameters[1]", "> 0");
   bad = good;
   bad.nodes.emplace_back(1, 1, 1);
   expect_refused(bad, "nodes[7]", "belong to a section");

@@ -12,10 +12,12 @@ namespace mmgrasp {
 
 using detail::kPi;
 
+constexpr double kLargestModulus = 1e40;  // Of members that do not bend at all [Pa].
+
 void BeamMaterial::check() const {
   require_not_negative(density, "density", "kg/m3");
-  require_positive(youngs_modulus, "youngs_modulus", "Pa", kLargestNumber);
-  require_positive(shear_modulus, "shear_modulus", "Pa", kLargestNumber);
+  require_positive(youngs_modulus, "youngs_modulus", "Pa", kLargestModulus);
+  require_positive(shear_modulus, "shear_modulus", "Pa", kLargestModulus);
   require_not_negative(stress_limit, "stress_limit", "Pa", kLargestNumber);
 }
 

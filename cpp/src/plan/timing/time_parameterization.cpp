@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <cstdint>
 
 #include "mmgrasp/core/error.hpp"
@@ -29,7 +30,7 @@ void check_limits(const Eigen::VectorXd& limits, Eigen::Index size, const std::s
   require(limits.size() == size, field, static_cast<double>(limits.size()),
           "must have one entry per joint (" + std::to_string(size) + ")");
   for (Eigen::Index i = 0; i < size; ++i) {
-    require_positive(limits[i], field + "[" + std::to_string(i) + "]", "", kLargestNumber);
+    require_positive(limits[i], field + "[" + std::to_string(i) + "]", "", std::numeric_limits<double>::max());
   }
 }
 

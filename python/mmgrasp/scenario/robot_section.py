@@ -151,6 +151,7 @@ def read_gripper(source: str) -> Hand:
     return _read_gripper(sections.gripper, robot, sections.robot["tool_link"].string())
 
 
+@checked
 def read_arm_of(source: str, progress: Progress = None) -> ArmSetup:
     """Arm and gripper of a robot profile or scenario, named and refused as in read_gripper()."""
     sections = _sections_of(source)

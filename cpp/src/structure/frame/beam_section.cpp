@@ -12,7 +12,7 @@ namespace mmgrasp {
 
 using detail::kPi;
 
-constexpr double kLargestModulus = 1e40;  // Of members that do not bend at all [Pa].
+constexpr double kLargestModulus = 1e40;  // That of members which do not bend at all [Pa].
 
 void BeamMaterial::check() const {
   require_not_negative(density, "density", "kg/m3");

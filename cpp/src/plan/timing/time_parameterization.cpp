@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <cstdint>
+#include <limits>
 
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/limits.hpp"

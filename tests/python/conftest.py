@@ -89,3 +89,20 @@ def small_plan(small_path: Path) -> mg.part_supply.ScenarioPlan:
 @pytest.fixture(scope="session")
 def small_plan_dict(small_plan: mg.part_supply.ScenarioPlan) -> dict[str, Any]:
     return small_plan.to_dict()
+
+
+REMOVE = object()
+
+
+def edited(scenario: dict[str, Any], path: str, value: Any) -> dict[str, Any]:
+    """A copy with one value set; the path is written like trays.0.size."""
+    out = copy.deepcopy(scenario)
+    target: Any = out
+    *parents, last = [int(key) if key.isdigit() else key for key in path.split(".")]
+    for key in parents:
+        target = target[key]
+    if value is REMOVE:
+        del target[last]
+    else:
+        target[last] = value
+    return out

@@ -16,26 +16,9 @@ import pytest
 import yaml
 
 import mmgrasp as mg
-from conftest import ASSETS
+from conftest import ASSETS, REMOVE, edited
 from mmgrasp.cli import main
 from mmgrasp.part_supply import plan_schema
-
-REMOVE = object()
-
-
-def edited(scenario: dict[str, Any], path: str, value: Any) -> dict[str, Any]:
-    """A copy with one value set; the path is written like trays.0.size."""
-    out = copy.deepcopy(scenario)
-    target: Any = out
-    *parents, last = [int(key) if key.isdigit() else key for key in path.split(".")]
-    for key in parents:
-        target = target[key]
-    if value is REMOVE:
-        del target[last]
-    else:
-        target[last] = value
-    return out
-
 
 BAD = [
     # path, value, pieces of the message

@@ -13,7 +13,7 @@ import pytest
 import yaml
 
 import mmgrasp as mg
-from conftest import ASSETS
+from conftest import ASSETS, REMOVE, edited
 from mmgrasp.cli.commands import report_page
 from mmgrasp.grasping import Suction, SuctionCup, sample_suction_grasps, seal_gap, suction_share
 
@@ -37,20 +37,6 @@ def planned(cell: dict[str, Any], write: Write) -> tuple[Path, mg.part_supply.Sc
     plan = mg.plan_part_supply(path)
     assert plan.outcome == mg.Outcome.solved, plan.obstructions
     return path, plan
-
-
-def changed(raw: dict[str, Any], keys: str, value: Any) -> dict[str, Any]:
-    """A copy with one entry set, or taken away for None."""
-    raw = copy.deepcopy(raw)
-    *outer, last = [int(key) if key.isdigit() else key for key in keys.split(".")]
-    at: Any = raw
-    for key in outer:
-        at = at[key]
-    if value is None:
-        del at[last]
-    else:
-        at[last] = value
-    return raw
 
 
 def test_the_plan_holds(planned: tuple[Path, mg.part_supply.ScenarioPlan]) -> None:
@@ -103,7 +89,7 @@ def test_parts_stay_on_the_cups_while_they_move(planned: tuple[Path, mg.part_sup
 @pytest.mark.parametrize(
     ("keys", "value", "message"),
     [
-        ("part_types.panel.mass", None, "has no mass .kg., which a hand of suction cups must know"),
+        ("part_types.panel.mass", REMOVE, "has no mass .kg., which a hand of suction cups must know"),
         ("part_types.panel.mass", 2.9, r"weighs 2.9 kg, the cups, of 115.5 N, hold 2\.\d+ kg of it"),
         ("part_types.panel.mass", 3.5, "weighs more than the gripper's payload, 3 kg"),
         ("part_types.panel.box", [0.06, 0.06, 0.06], "too small or too curved for the suction cups"),
@@ -130,7 +116,7 @@ def test_parts_stay_on_the_cups_while_they_move(planned: tuple[Path, mg.part_sup
 def test_what_cups_do_not_hold_is_refused(
     cell: dict[str, Any], write: Write, keys: str, value: Any, message: str | None
 ) -> None:
-    path = write(changed(cell, keys, value), "refused.yaml")
+    path = write(edited(cell, keys, value), "refused.yaml")
     if message is None:
         mg.load_scenario(path)
         return
@@ -171,12 +157,12 @@ def test_broken_plans_are_seen(planned: tuple[Path, mg.part_supply.ScenarioPlan]
         ("scenario.gripper.payload", 1.0, "payload"),
         ("scenario.gripper.suction.vacuum", 2e4, "payload"),
         ("scenario.gripper.suction.safety", 9.0, "payload"),
-        (f"{at}.mass", None, "malformed"),
+        (f"{at}.mass", REMOVE, "malformed"),
         ("scenario.gripper.max_opening", 0.1, "malformed"),
         ("scenario.gripper.suction", None, "malformed"),
     ):
         try:
-            found = faults(changed(content, keys, value))
+            found = faults(edited(content, keys, value))
         except mg.InvalidInput:
             found = {"malformed"}
         assert code in found, keys

@@ -5,11 +5,13 @@ from __future__ import annotations
 import resource
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-from conftest import ASSETS
+from conftest import ASSETS, edited
 
 ROBOT = str(ASSETS / "robots" / "omni6" / "omni6.urdf")
 ENTRY = "import sys, mmgrasp_command; sys.exit(mmgrasp_command.main())"
@@ -41,19 +43,27 @@ def test_little_memory_is_one_message(megabytes: int) -> None:
 
 
 @pytest.mark.slow
-def test_little_memory_while_planning_is_one_message(small_path: Path, tmp_path: Path) -> None:
-    told = 0
-    for megabytes in (350, 400, 450, 500, 550):
-        done = command(
-            resource.RLIMIT_AS, megabytes * 1_000_000, "plan", str(small_path), "-o", str(tmp_path / str(megabytes))
-        )
-        assert "Traceback" not in done.stderr, done.stderr
-        if any(line in done.stderr for line in ENDED_BY_LIBRARY):
-            continue
+def test_little_memory_while_planning_is_one_message(
+    small: dict[str, Any], write: Callable[..., Path], tmp_path: Path
+) -> None:
+    """The database needs 1.3 GB, far more than the libraries: what ends the process there is ours to say."""
+    path = write(edited(small, "reach.samples", 60_000_000))
+    for megabytes in (700, 900):
+        done = command(resource.RLIMIT_AS, megabytes * 1_000_000, "plan", str(path), "-o", str(tmp_path / "plan"))
+        assert "Traceback" not in done.stderr
+        assert done.returncode == 2, done.stderr
+        assert done.stderr.count("mmgrasp: ") == 1, done.stderr
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("megabytes", [350, 400, 450, 500, 550])
+def test_memory_that_just_suffices_is_one_message_too(megabytes: int, small_path: Path, tmp_path: Path) -> None:
+    """Where it ends depends on what is cached and on the libraries; a plan, no plan or one message it is anyway."""
+    done = command(resource.RLIMIT_AS, megabytes * 1_000_000, "plan", str(small_path), "-o", str(tmp_path))
+    assert "Traceback" not in done.stderr, done.stderr
+    if not any(line in done.stderr for line in ENDED_BY_LIBRARY):
         assert done.returncode in (0, 2, 4)
-        told += done.returncode == 2
         assert done.stderr.count("mmgrasp: ") == (done.returncode == 2), done.stderr
-    assert told > 0
 
 
 @pytest.mark.slow

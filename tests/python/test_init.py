@@ -87,10 +87,22 @@ def test_shipped_robots_need_no_edit(tmp_path: Path, urdf: Path, options: list[s
     assert len(plan["picks"]) == 12
 
 
-def test_an_arm_on_a_base_gets_a_gripper_and_needs_no_edit(data: Path, tmp_path: Path) -> None:
-    arm = data / "robots/ur/expanded/ur10e.urdf"
-    base = data / "robots/ridgeback/expanded/ridgeback.urdf"
-    plan = planned_and_verified(tmp_path, base, "--mount", f"{arm}=mid_mount")
+RIDGEBACK = "ridgeback/expanded/ridgeback.urdf"
+OTHERS_ROBOTS = {
+    "tiago": ["tiago/example-robot-data/robots/tiago_description/robots/tiago_no_hand.urdf"],
+    "panda": [RIDGEBACK, "panda/moveit_resources_panda_description/urdf/panda.urdf"],
+    "iiwa": [RIDGEBACK, "kuka_iiwa/kuka_lbr_iiwa_support/urdf/lbr_iiwa_14_r820.urdf"],
+    "ur10e": [RIDGEBACK, "ur/expanded/ur10e.urdf"],
+    "ur5e": [RIDGEBACK, "ur/expanded/ur5e.urdf"],
+    "ur5, 148,000 faces": [RIDGEBACK, "ur5_vamp/ur5/ur5.urdf"],
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", OTHERS_ROBOTS)
+def test_robots_that_others_wrote_need_no_edit(data: Path, tmp_path: Path, name: str) -> None:
+    base, *arms = (data / "robots" / file for file in OTHERS_ROBOTS[name])
+    plan = planned_and_verified(tmp_path, base, *(word for arm in arms for word in ("--mount", f"{arm}=mid_mount")))
     assert len(plan["picks"]) == 12
 
 

@@ -82,7 +82,7 @@ Solid mesh_solid(const std::shared_ptr<const TriangleMesh>& mesh, const Pose& T)
   solid.geometry = bvh(*mesh);
   solid.T_body_shape = T;
   for (const Eigen::Vector3d& v : mesh->vertices) solid.local.extend(v);
-  if (mesh->closed) solid.closed_mesh = mesh;
+  solid.mesh = mesh;
   solid.probes = piece_probes(*mesh);
   return solid;
 }
@@ -138,12 +138,26 @@ void check_item(const LinkShape& item) {
 
 /// True when a piece of `inner` lies inside the closed mesh `outer`.
 bool swallows(const Solid& outer, const Pose& T_world_outer, const Solid& inner, const Pose& T_world_inner) {
-  if (!outer.closed_mesh) return false;
+  if (!outer.mesh || !outer.mesh->closed) return false;
   const Pose T_outer_inner = T_world_outer.inverse() * T_world_inner;
   return std::any_of(inner.probes.begin(), inner.probes.end(), [&](const Eigen::Vector3d& probe) {
     const Eigen::Vector3d point = T_outer_inner * probe;
-    return outer.local.contains(point) && mesh_contains(*outer.closed_mesh, point);
+    return outer.local.contains(point) && mesh_contains(*outer.mesh, point);
   });
+}
+
+/// True when a mesh reaches below a plane. FCL gives a half-space no bounds in its tree and looks at every triangle.
+bool mesh_below_plane(const Solid& mesh, const Pose& T_mesh, const Solid& plane, const Pose& T_plane) {
+  const auto& half_space = static_cast<const fcl::Halfspaced&>(*plane.geometry);
+  const Eigen::Vector3d normal = T_mesh.linear().transpose() * (T_plane.linear() * half_space.n);
+  const double offset =
+      half_space.d - half_space.n.dot(T_plane.linear().transpose() * (T_mesh.translation() - T_plane.translation()));
+  const double least_of_bounds = normal.dot(mesh.local.center()) - 0.5 * normal.cwiseAbs().dot(mesh.local.sizes());
+  if (least_of_bounds > offset) return false;
+  const auto below = [&](int vertex) { return normal.dot(mesh.mesh->vertices[vertex]) <= offset; };
+  const auto& triangles = mesh.mesh->triangles;
+  return std::any_of(triangles.begin(), triangles.end(),
+                     [&](const auto& t) { return below(t[0]) || below(t[1]) || below(t[2]); });
 }
 
 }  // namespace
@@ -168,6 +182,8 @@ Bounds bounds_at(const Solid& solid, const Pose& T) {
 }
 
 bool touches(const Solid& a, const Pose& T_a, const Solid& b, const Pose& T_b) {
+  if (a.unbounded && b.mesh) return mesh_below_plane(b, T_b, a, T_a);
+  if (b.unbounded && a.mesh) return mesh_below_plane(a, T_a, b, T_b);
   static const fcl::CollisionRequestd request(1, false);
   fcl::CollisionResultd result;
   fcl::collide(a.geometry.get(), T_a, b.geometry.get(), T_b, request, result);

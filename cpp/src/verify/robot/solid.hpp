@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "mmgrasp/core/export.hpp"
 #include "mmgrasp/core/pose.hpp"
 #include "mmgrasp/geometry/mesh.hpp"
 #include "mmgrasp/robot/robot_source.hpp"
@@ -17,20 +18,20 @@ using Bounds = Eigen::AlignedBox3d;
 struct Solid {
   std::shared_ptr<const fcl::CollisionGeometryd> geometry;
   Pose T_body_shape = Pose::Identity();
-  Bounds local;                                     ///< Bounds in the shape's frame.
-  bool unbounded = false;                           ///< A plane.
-  std::shared_ptr<const TriangleMesh> closed_mesh;  ///< Set for closed meshes, which are solid inside.
-  std::vector<Eigen::Vector3d> probes;              ///< One point on or in each connected piece, shape frame.
+  Bounds local;                              ///< Bounds in the shape's frame.
+  bool unbounded = false;                    ///< A plane: all that lies below it.
+  std::shared_ptr<const TriangleMesh> mesh;  ///< Set for meshes; closed ones are solid inside.
+  std::vector<Eigen::Vector3d> probes;       ///< One point on or in each connected piece, shape frame.
 };
 
 /// FCL geometry for a shape (voxels give one box each). Throws InvalidInput for an unusable shape.
-std::vector<Solid> make_solids(const std::vector<LinkShape>& shapes);
+MMGRASP_EXPORT std::vector<Solid> make_solids(const std::vector<LinkShape>& shapes);
 
 /// Axis-aligned bounds of the solid with its shape frame at T.
 Bounds bounds_at(const Solid& solid, const Pose& T_world_shape);
 
 /// True when two solids at these shape frames share a point. A solid wholly inside a closed mesh touches it.
-bool touches(const Solid& a, const Pose& T_world_a, const Solid& b, const Pose& T_world_b);
+MMGRASP_EXPORT bool touches(const Solid& a, const Pose& T_world_a, const Solid& b, const Pose& T_world_b);
 
 /// Largest distance of any point of the shapes from the body's origin (an upper bound); infinite for planes.
 double radius_of(const std::vector<Solid>& solids);

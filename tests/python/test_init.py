@@ -72,11 +72,11 @@ def test_an_arm_without_fingers(data: Path) -> None:
     assert find_tool(robot, arm, None) is None
 
 
-def planned_and_verified(folder: Path, urdf: Path, *options: str) -> dict[str, Any]:
+def planned_and_verified(folder: Path, urdf: Path, *options: str, drive_by: bool = False) -> dict[str, Any]:
     """Through the command's doors, without an edit of what init wrote."""
     file, out = folder / "first.yaml", folder / "out"
     assert main(["init", str(urdf), "-o", str(file), *options]) == 0
-    assert main(["plan", str(file), "-o", str(out), "--no-pictures"]) == 0
+    assert main(["plan", str(file), "-o", str(out), "--no-pictures", *["--drive-by"] * drive_by]) == 0
     assert main(["verify", str(out / "plan.json"), "--scenario", str(file), "--samples", "100"]) == 0
     return read_plan(out / "plan.json")
 
@@ -98,12 +98,24 @@ OTHERS_ROBOTS = {
 }
 
 
+def others_robot(data: Path, name: str) -> list[str]:
+    """What init is told: a robot, or a base and the arm on it."""
+    base, *arms = (str(data / "robots" / file) for file in OTHERS_ROBOTS[name])
+    return [base, *(word for arm in arms for word in ("--mount", f"{arm}=mid_mount"))]
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", OTHERS_ROBOTS)
 def test_robots_that_others_wrote_need_no_edit(data: Path, tmp_path: Path, name: str) -> None:
-    base, *arms = (data / "robots" / file for file in OTHERS_ROBOTS[name])
-    plan = planned_and_verified(tmp_path, base, *(word for arm in arms for word in ("--mount", f"{arm}=mid_mount")))
-    assert len(plan["picks"]) == 12
+    urdf, *options = others_robot(data, name)
+    assert len(planned_and_verified(tmp_path, Path(urdf), *options)["picks"]) == 12
+
+
+@pytest.mark.slow
+def test_an_arm_given_by_its_links_takes_parts_in_passing(data: Path, tmp_path: Path) -> None:
+    urdf, *options = others_robot(data, "iiwa")
+    plan = planned_and_verified(tmp_path, Path(urdf), *options, drive_by=True)
+    assert len(plan["picks"]) == len(plan["drive_by"]["motions"]) == 12
 
 
 def write_map(folder: Path, cells: np.ndarray) -> Path:

@@ -98,11 +98,11 @@ class KnownPick:
     def group(self) -> JointGroup:
         """What moves: base and arm, or the arm of a base that stands at the stop; the hand is open."""
         joints = {**self.plan.scenario.setup.other_joints, **self.problem.gripper.joint_values(self.opening)}
-        name, tip = self.problem.arm.name, self.problem.gripper.tool_link
+        arm_of = self.plan.scenario.setup.group
         if self.drives:
-            return _slower(self.problem.robot).group(name, tip=tip, with_base=True).with_reference(joints)
+            return _slower(self.problem.robot).group(**arm_of, with_base=True).with_reference(joints)
         x, y, theta = self.plan.stops[self.pick.stop].pose
-        arm = self.problem.robot.group(name, tip=tip).with_reference(joints)
+        arm = self.problem.robot.group(**arm_of).with_reference(joints)
         return arm.at(_core.pose([x, y, 0.0], rpy=[0.0, 0.0, theta]))
 
     def world(self) -> World:

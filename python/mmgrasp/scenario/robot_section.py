@@ -46,6 +46,8 @@ class RobotSetup:
 
     robot: Robot
     arm: JointGroup
+    group: dict[str, Any]
+    """What `Robot.group` makes the arm of: an SRDF group's name or its base link, and the tip."""
     gripper: Hand
     place_region: PlaceRegion
     home: np.ndarray
@@ -178,10 +180,11 @@ def read_setup(sections: RobotSections, progress: Progress = None) -> RobotSetup
 
     other = {name: _joint_value(robot, name, value) for name, value in _named_numbers(node, "joints")}
     closed = gripper.joint_values(0.0)
-    arm = _read_group(robot, node["group"], tool_link)
+    group = _read_group(robot, node["group"], tool_link)
+    arm = _arm_of(robot, node["group"], group)
     _check_joint_owners(sections, arm)
     robot = held_links_may_meet(robot, arm, gripper, other)
-    arm = _read_group(robot, node["group"], tool_link).with_reference({**other, **closed})
+    arm = robot.group(**group).with_reference({**other, **closed})
     home = _read_home(node["home"], arm)
     _fixed_to_root(arm, sections.place_region["parent"], home)
     for key in ("finger_links", "cup_links"):
@@ -189,7 +192,7 @@ def read_setup(sections: RobotSections, progress: Progress = None) -> RobotSetup
             _check_finger_links(sections.gripper[key], arm, tool_link, home)
     speed = sections.gripper["closing_speed"].number(above=0, most=10) if "closing_speed" in sections.gripper else 0.1
     place_region = _read_place_region(sections.place_region, bin_pose)
-    return RobotSetup(robot, arm, gripper, place_region, home, other, speed)
+    return RobotSetup(robot, arm, group, gripper, place_region, home, other, speed)
 
 
 @dataclass
@@ -217,8 +220,8 @@ def _arm_setup(node: Node, hand: Node, progress: Progress) -> ArmSetup:
     gripper = _read_gripper(hand, robot, tool_link)
     robot = fingers_may_meet(_core.with_sampled_pairs(robot, progress=progress), gripper)
     other = {name: _joint_value(robot, name, value) for name, value in _named_numbers(node, "joints")}
-    arm = _read_group(robot, node["group"], tool_link).with_reference({**other, **gripper.joint_values(0.0)})
-    return ArmSetup(robot, arm, gripper)
+    arm = _arm_of(robot, node["group"], _read_group(robot, node["group"], tool_link))
+    return ArmSetup(robot, arm.with_reference({**other, **gripper.joint_values(0.0)}), gripper)
 
 
 def compose(node: Node) -> Robot:
@@ -288,20 +291,21 @@ def _joint_value(robot: Robot, name: str, node: Node) -> float:
     return value
 
 
-def _read_group(robot: Robot, node: Node, tool_link: str) -> JointGroup:
-    make: dict[str, Any]
+def _read_group(robot: Robot, node: Node, tool_link: str) -> dict[str, Any]:
     if isinstance(node.raw, str):
         if node.raw not in robot.groups:
             node.fail(f"the SRDF has no such group{near_miss(node.raw, list(robot.groups) or ['(none)'])}")
-        make = {"name": node.raw, "tip": tool_link}
-    else:
-        node.mapping("base_link", "tip_link")
-        for key in ("base_link", "tip_link"):
-            if key in node:
-                _link(robot, node[key])
-        make = {"base_link": node["base_link"].string(), "tip": tool_link}
+        return {"name": node.raw, "tip": tool_link}
+    node.mapping("base_link", "tip_link")
+    for key in ("base_link", "tip_link"):
+        if key in node:
+            _link(robot, node[key])
+    return {"base_link": node["base_link"].string(), "tip": tool_link}
+
+
+def _arm_of(robot: Robot, node: Node, group: dict[str, Any]) -> JointGroup:
     with node.blamed():
-        arm = robot.group(**make)
+        arm = robot.group(**group)
     _check_speeds(node, arm)
     return arm
 

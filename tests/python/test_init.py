@@ -95,13 +95,16 @@ OTHERS_ROBOTS = {
     "ur10e": [RIDGEBACK, "ur/expanded/ur10e.urdf"],
     "ur5e": [RIDGEBACK, "ur/expanded/ur5e.urdf"],
     "ur5, 148,000 faces": [RIDGEBACK, "ur5_vamp/ur5/ur5.urdf"],
+    "ur10e, three fingers": [RIDGEBACK, "ur/expanded/ur10e.urdf", "robotiq/expanded/robotiq_3f_articulated.urdf"],
 }
+MOUNTED_ON = ["mid_mount", "ur10e_robot_tool0"]  # arm, hand
 
 
 def others_robot(data: Path, name: str) -> list[str]:
     """What init is told: a robot, or a base and the arm on it."""
-    base, *arms = (str(data / "robots" / file) for file in OTHERS_ROBOTS[name])
-    return [base, *(word for arm in arms for word in ("--mount", f"{arm}=mid_mount"))]
+    base, *mounted = (str(data / "robots" / file) for file in OTHERS_ROBOTS[name])
+    pairs = zip(mounted, MOUNTED_ON, strict=False)
+    return [base, *(word for file, link in pairs for word in ("--mount", f"{file}={link}"))]
 
 
 @pytest.mark.slow
@@ -116,6 +119,15 @@ def test_an_arm_given_by_its_links_takes_parts_in_passing(data: Path, tmp_path: 
     urdf, *options = others_robot(data, "iiwa")
     plan = planned_and_verified(tmp_path, Path(urdf), *options, drive_by=True)
     assert len(plan["picks"]) == len(plan["drive_by"]["motions"]) == 12
+
+
+def test_a_link_of_a_mounted_robot_is_told_by_its_own_name(
+    data: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    urdf, *options = others_robot(data, "ur10e, three fingers")
+    options[-1] = options[-1].replace("=ur10e_robot_tool0", "=tool0")
+    assert main(["init", urdf, "-o", str(tmp_path / "first.yaml"), *options]) == 2
+    assert "'tool0': the robot has no such link; did you mean ur10e_robot_tool0?" in capsys.readouterr().err
 
 
 def write_map(folder: Path, cells: np.ndarray) -> Path:

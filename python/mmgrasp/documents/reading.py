@@ -42,8 +42,8 @@ RENAMED = {
 
 
 def near_miss(wrong: str, known: list[str]) -> str:
-    """ "; did you mean x?", or the list of what is known."""
-    close = difflib.get_close_matches(wrong, known, 1, 0.5)
+    """ "; did you mean x?", or the list of what is known. A name behind the prefix that a mounted robot's names got is meant, too."""
+    close = difflib.get_close_matches(wrong, known, 1, 0.5) or [name for name in known if name.endswith(f"_{wrong}")]
     return f"; did you mean {close[0]}?" if close else "; known are " + ", ".join(known)
 
 

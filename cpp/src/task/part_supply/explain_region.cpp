@@ -8,6 +8,7 @@
 #include "mmgrasp/task/base_sequence.hpp"
 #include "task/base_region/search_area.hpp"
 #include "task/part_supply/advised_move.hpp"
+#include "task/part_supply/hand_obstacles.hpp"
 #include "task/part_supply/obstructions.hpp"
 #include "task/problem/scene.hpp"
 
@@ -106,8 +107,18 @@ std::string move_advice(const Obstruction& o) {
   return text.str();
 }
 
+/// The open hand is blocked at every grasp.
+std::string hand_advice(const PartSupplyProblem& problem, PartRef ref, int too_wide) {
+  std::string text = "the open hand touches " + hand_obstacles(problem, ref) +
+                     ": give grasps from above, lower the tray's walls, leave more room between the parts, or hold "
+                     "them higher above what they stand on";
+  if (problem.gripper.suction) return text;
+  text += " (gripper opens to " + metres(problem.gripper.max_opening);
+  return text + (too_wide > 0 ? ", " + std::to_string(too_wide) + " grasps were too wide)" : ")");
+}
+
 std::string advice(const PartExplanation& part, const Obstruction& o, std::size_t in_collision,
-                   const PartSupplyProblem& problem, int too_wide) {
+                   const PartSupplyProblem& problem, PartRef ref, int too_wide) {
   const Rejections& r = part.rejections;
   const std::size_t collisions = r.scene + r.self_collision;
   if (!o.move_trays.empty()) return move_advice(o);
@@ -125,15 +136,7 @@ std::string advice(const PartExplanation& part, const Obstruction& o, std::size_
            " base poses around it: clear the floor in front of the tray, widen the workspace or choose another home "
            "configuration";
   }
-  if (r.grasp_filter == r.total()) {
-    return "the open hand touches the scene or a neighbour at every grasp: give grasps from above, lower the tray's "
-           "walls or leave "
-           "more room between the parts" +
-           (problem.gripper.suction
-                ? ""
-                : " (gripper opens to " + metres(problem.gripper.max_opening) +
-                      (too_wide > 0 ? ", " + std::to_string(too_wide) + " grasps were too wide)" : ")"));
-  }
+  if (r.grasp_filter == r.total()) return hand_advice(problem, ref, too_wide);
   if (r.unreachable + r.limits >= collisions) {
     return "bring the part nearer to where the robot can stand, allow other base headings, or give grasps from other "
            "directions";
@@ -231,7 +234,7 @@ Obstruction explain_region(const PartSupplyProblem& problem, const ReachDatabase
   if (!all_blocked) obstruction.reach_deficit = reach_deficit(problem, database, evaluator, grid, {tray, index});
   add_advised_move(obstruction, problem, database, grid, tray, earlier);
   const std::string fix =
-      advice(explanation, obstruction, region.base_poses_in_collision, problem, part.grasps_too_wide);
+      advice(explanation, obstruction, region.base_poses_in_collision, problem, {tray, index}, part.grasps_too_wide);
   if (explanation.base_poses_tried == 0) {
     obstruction.message = "part '" + part.name + "': no base pose could be tried: " + fix;
   } else if (explanation.base_poses_feasible > 0) {

@@ -75,7 +75,7 @@ def first_scenario(
         place = Bin(robot.links[0], np.array([outline.low[0] - BIN_SIZE[0], 0.0, outline.low[2] + 0.5]), 0.0)
     box = LinkShape(_core.Box(BIN_SIZE), _core.pose([0, 0, -BIN_SIZE[2] / 2]))
     joints = _arm_of(robot.with_link(BIN_LINK, place.parent, _core.pose(place.xyz), [box]), given, home)
-    part = fitting_part(hand)
+    part = fitting_part(robot, hand)
     height, reached = counter_height(joints, hand, q, outline, part, progress)
     if reached < _SELDOM:
         doubts.append(

@@ -6,11 +6,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..._core import CollisionChecker, Hand, InvalidInput, JointGroup, LinkShape, Outcome, World, pose
+from ..._core import CollisionChecker, Hand, InvalidInput, JointGroup, LinkShape, Outcome, Robot, World, pose
 from ..._progress import Progress
 from .bin import TURNS, looking_down
 from .map_grid import MapGrid
 from .standing import Outline
+from .tree import box_around
 
 TRAY = np.array([0.30, 0.40, 0.06])
 COUNTER = np.array([0.50, 1.60])  # depth, width [m]
@@ -22,6 +23,7 @@ _ASIDE = (0.0, -0.25, 0.25, -0.45, 0.45)  # where the base stands beside the tra
 _PLACES = [np.array([x, y, 0.0]) for x in (-0.08, 0.08) for y in (-0.12, 0.0, 0.12)]  # of the tool frame in a tray [m]
 _ABOVE = 0.006  # a tray's floor lies so far above the counter [m]: its thickness, and a gap
 _HELD = 0.75  # of a part's height, where the hand holds it
+_OVER_FLOOR = 0.008  # fingers end at least so far above what the part stands on [m]
 _ENOUGH = 0.7  # share of these places that must be reached from one place of the base
 _ROOM = 0.10  # around the turning base that is kept free on a map [m]
 _BEHIND = 0.3  # a wall so far behind the counter is what it stands at [m]
@@ -38,8 +40,9 @@ class Layout:
     doubts: list[str] = field(default_factory=list)
 
 
-def fitting_part(hand: Hand) -> np.ndarray:
-    """Sizes of a box that the hand takes with room to spare [m]: 0.6 of its free opening wide, at most 5 cm."""
+def fitting_part(robot: Robot, hand: Hand) -> np.ndarray:
+    """Sizes of a box that the hand takes with room to spare [m]: 0.6 of its free opening wide, at most 5 cm, and so high that fingers which
+    curl around it do not reach what it stands on."""
     free = hand.max_opening - 2 * hand.clearance
     if free < 0.004:
         raise InvalidInput(
@@ -47,7 +50,19 @@ def fitting_part(hand: Hand) -> np.ndarray:
             "of 4 mm: state a smaller clearance, or another hand"
         )
     width = round(min(0.6 * free, 0.05), 3)
-    return np.array([width, round(1.4 * width, 3), max(0.06, round(1.2 * width, 3))])
+    needed = (_past_tool_frame(robot, hand, width) + _OVER_FLOOR) / _HELD
+    return np.array([width, round(1.4 * width, 3), round(max(0.06, 1.2 * width, needed), 3)])
+
+
+def _past_tool_frame(robot: Robot, hand: Hand, width: float) -> float:
+    """How far the fingers reach past the tool frame along the approach while they close on something so wide [m]."""
+    deepest = 0.0
+    for opening in np.linspace(width, hand.pregrasp_opening(1.4 * width), 5):
+        poses = robot.link_poses(hand.joint_values(float(opening)))
+        box = box_around(robot, poses, hand.finger_links, hand.tool_link)
+        if box is not None:
+            deepest = max(deepest, float(np.sum(np.maximum(box[0] * hand.approach, box[1] * hand.approach))))
+    return deepest
 
 
 def counter_height(

@@ -7,7 +7,8 @@
 
 namespace mmgrasp::detail {
 
-/// What the hand, open to take the part, touches in the scene with all parts, and at how many of the part's grasps, most first:
+/// What the hand, open to take the part, touches in the scene with all parts, and at how many of the part's grasps,
+/// most first:
 /// "'counter' (180 of 200 grasps), 'tray A' (120)". Empty when nothing is touched.
 std::string hand_obstacles(const PartSupplyProblem& problem, PartRef part);
 

@@ -7,7 +7,7 @@
 namespace mmgrasp::detail {
 namespace {
 
-/// What helps against candidates that fell at this stage of a pick.
+/// What may help against candidates that fell at this stage of a pick.
 std::string motion_advice(const std::string& stage) {
   if (stage == "approach") return "shorten approach_distance or make room in front of the part";
   if (stage == "lift") return "lower lift_height or make room above the part";
@@ -60,7 +60,8 @@ Obstruction explain_long_search(const Eigen::Vector3d& from, bool from_stop, con
   return obstruction;
 }
 
-Obstruction explain_motion(const PartSupplyProblem& problem, const Eigen::Vector3d& base_pose, const Pick& failed) {
+Obstruction explain_motion(const PartSupplyProblem& problem, const Eigen::Vector3d& base_pose, const Pick& failed,
+                           const std::vector<std::string>& remedies) {
   Obstruction obstruction;
   const Part& part = part_of(problem, failed.part);
   obstruction.tray = tray_of(problem, failed.part.tray).name;
@@ -68,7 +69,10 @@ Obstruction explain_motion(const PartSupplyProblem& problem, const Eigen::Vector
   obstruction.stage = "motion";
   obstruction.message = "part '" + part.name + "' can be grasped from the stop at " + pose_text(base_pose) +
                         ", but no arm motion was found: most candidates fell at '" + failed.failed_at + "' (" +
-                        failed.rejections.summary() + "): " + motion_advice(failed.failed_at);
+                        failed.rejections.summary() + "): ";
+  for (const std::string& remedy : remedies)
+    obstruction.message += (&remedy == &remedies.front() ? "it is picked when you " : ", or ") + remedy;
+  if (remedies.empty()) obstruction.message += motion_advice(failed.failed_at);
   return obstruction;
 }
 

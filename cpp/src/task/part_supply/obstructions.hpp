@@ -27,7 +27,8 @@ Obstruction explain_route(const Eigen::Vector3d& from, bool from_stop, const Eig
 Obstruction explain_long_search(const Eigen::Vector3d& from, bool from_stop, const Eigen::Vector3d& to,
                                 const std::string& tray, double resolution);
 
-/// Explains that no arm motion was found for this pick from a base pose.
-Obstruction explain_motion(const PartSupplyProblem& problem, const Eigen::Vector3d& base_pose, const Pick& failed);
+/// Explains that no arm motion was found for this pick from a base pose; `remedies` as of pick_remedies().
+Obstruction explain_motion(const PartSupplyProblem& problem, const Eigen::Vector3d& base_pose, const Pick& failed,
+                           const std::vector<std::string>& remedies);
 
 }  // namespace mmgrasp::detail

@@ -14,6 +14,7 @@
 #include "task/part_supply/arrivals.hpp"
 #include "task/part_supply/impossible.hpp"
 #include "task/part_supply/obstructions.hpp"
+#include "task/part_supply/pick_remedies.hpp"
 #include "task/part_supply/plan_intersections.hpp"
 #include "task/part_supply/stop_robustness.hpp"
 #include "task/pick/joined_motions.hpp"
@@ -80,6 +81,13 @@ class PartSupply {
   struct FailedPick {
     Eigen::Vector3d pose;
     TrayId tray;
+  };
+
+  /// Picks that failed at a stop, and the parts that were in place.
+  struct UnpickedStop {
+    std::vector<Pick> failed;
+    Eigen::Vector3d pose;
+    std::vector<PartRef> left;
   };
 
   bool find_regions() {
@@ -189,6 +197,7 @@ class PartSupply {
       plan_.proven_minimal = first.proven_minimal;
     }
     plan_ = std::move(first);
+    if (unpicked_) explain_picks(*unpicked_);
     return false;
   }
 
@@ -265,6 +274,19 @@ class PartSupply {
     return left;
   }
 
+  /// Why picks failed. What helps the first is tried for the others, too; all that might would take too long.
+  void explain_picks(const UnpickedStop& stop) {
+    std::vector<std::string> known;
+    for (const Pick& pick : stop.failed) {
+      const bool first = &pick == &stop.failed.front();
+      std::vector<std::string> remedies;
+      if (first || !known.empty())
+        remedies = pick_remedies(problem_, database_, stop.pose, pick.part, stop.left, known, monitor_);
+      obstructed(explain_motion(problem_, stop.pose, pick, remedies));
+      if (first) known = std::move(remedies);
+    }
+  }
+
   /// Plans the picks at one stop; when some motion fails there, at other base poses of the same region.
   bool plan_picks_at_stop(int index, BaseRoutes& routes, std::set<PartRef>& picked) {
     const StageClock clock(plan_, "picks");
@@ -289,7 +311,7 @@ class PartSupply {
         if (found.outcome != Outcome::not_found) break;
       }
       if (found.outcome == Outcome::not_found) {
-        for (const Pick& pick : first.picks) obstructed(explain_motion(problem_, stop.pose, pick));
+        if (!unpicked_) unpicked_ = {first.picks, stop.pose, left};
         failed_ = std::move(failed);
         return false;
       }
@@ -374,6 +396,7 @@ class PartSupply {
   std::optional<BasePoseEvaluator> evaluator_;  // with all parts in place; built once
   std::vector<TrayId> unreachable_;
   std::vector<FailedPick> failed_;
+  std::optional<UnpickedStop> unpicked_;  ///< The first: what is reported when no other stops do better.
 };
 
 }  // namespace

@@ -1,4 +1,6 @@
 // plan_pick() of a part-supply problem: the part as an object of the scene, the bin as its place.
+#include "task/pick/part_pick.hpp"
+
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/task/pick.hpp"
 #include "task/pick/release.hpp"
@@ -18,26 +20,29 @@ void check_part(const PartSupplyProblem& problem, PartRef part, const std::strin
   check(part.part, detail::tray_of(problem, part.tray).parts.size(), part_name);
 }
 
-/// The part as an object of the scene, to be released over the bin.
+}  // namespace
+
+namespace detail {
+
 PickProblem pick_of(const PartSupplyProblem& problem, const Eigen::Vector3d& base_pose, PartRef ref,
                     const std::vector<PartRef>& remaining) {
   const Pose T_world_root = pose_from_planar(base_pose);
-  const Part& part = detail::part_of(problem, ref);
+  const Part& part = part_of(problem, ref);
   const PartSupplyOptions& options = problem.options;
   const unsigned seed =
       options.seed * 1000003u + static_cast<unsigned>(ref.tray) * 1009u + static_cast<unsigned>(ref.part);
   return {problem.arm.at(T_world_root),
           problem.gripper,
-          detail::world_with_parts(problem, remaining),
+          world_with_parts(problem, remaining),
           part.name,
           part.grasps,
           problem.home,
-          detail::places_over_bin(problem.place_region, T_world_root, part),
+          places_over_bin(problem.place_region, T_world_root, part),
           {options.approach_distance, options.lift_height, options.motion_time_limit, options.grid.ik_seeds, seed},
           part.mass};
 }
 
-}  // namespace
+}  // namespace detail
 
 Pick plan_pick(const PartSupplyProblem& problem, const ReachDatabase& database, const Eigen::Vector3d& base_pose,
                PartRef part, const std::vector<PartRef>& remaining, const Monitor& monitor) {
@@ -46,7 +51,7 @@ Pick plan_pick(const PartSupplyProblem& problem, const ReachDatabase& database, 
     const std::string name = "remaining[" + std::to_string(i) + "]";
     check_part(problem, remaining[i], name + ".tray", name + ".part");
   }
-  Pick pick = detail::search_pick(pick_of(problem, base_pose, part, remaining), database, monitor);
+  Pick pick = detail::search_pick(detail::pick_of(problem, base_pose, part, remaining), database, monitor);
   pick.part = part;
   return pick;
 }

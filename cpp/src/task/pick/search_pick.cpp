@@ -60,8 +60,8 @@ class PickPlanner {
       centre_of_mass_ = joined_surface(problem.world.objects().at(problem.object).shapes).centre_of_mass;
   }
 
-  Pick run() {
-    for (int round = 0; round < 2; ++round) {
+  Pick run(int rounds) {
+    for (int round = 0; round < rounds; ++round) {
       for (int g = 0; g < static_cast<int>(problem_.grasps.size()); ++g) {
         if (motion_tries_ < kMotionTries && try_grasp(g, round)) return pick_;
         if (monitor_.stopped()) {
@@ -272,10 +272,10 @@ class PickPlanner {
 
 }  // namespace
 
-Pick search_pick(const PickProblem& problem, const ReachDatabase& database, const Monitor& monitor) {
+Pick search_pick(const PickProblem& problem, const ReachDatabase& database, const Monitor& monitor, bool thorough) {
   Monitor quiet;
   quiet.stop = monitor.stop;
-  return PickPlanner(problem, database, quiet).run();
+  return PickPlanner(problem, database, quiet).run(thorough ? 2 : 1);
 }
 
 }  // namespace mmgrasp::detail

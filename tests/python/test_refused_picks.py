@@ -1,4 +1,4 @@
-"""What the plan says where the open hand finds no room around a part: what is in its way, counted by hand from the scene."""
+"""What a plan says where parts cannot be picked: what is in the hand's way, and what would help, tried by planning once more."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
+
+import pytest
 
 import mmgrasp as mg
 from conftest import edited
@@ -34,3 +36,25 @@ def test_a_narrow_deep_tray_is_what_the_hand_touches(small: dict[str, Any], writ
     assert next(iter(touched)) == f"tray {tray['name']}"
     grasps = next(t for t in mg.scenario.load_scenario(write(small)).problem().trays).parts[0].grasps
     assert touched[f"tray {tray['name']}"] == len(grasps)
+
+
+@pytest.mark.slow
+def test_remedies_are_those_that_work(small: dict[str, Any], write: Callable[..., Path]) -> None:
+    """A board 40 cm above the tray's floor lets the hand grasp, not lift."""
+    x, y, z = small["trays"][0]["pose"]["xyz"]
+    roof = {"name": "roof", "box": [0.6, 0.6, 0.02], "pose": {"xyz": [x, y, z + 0.4]}}
+    under = edited(small, "obstacles", [*small["obstacles"], roof])
+    plan = mg.plan_part_supply(write(under))
+    assert plan.outcome == mg.Outcome.not_found
+    first = plan.obstructions[0]
+    assert first.stage == "motion"
+    assert "move 'roof' away" in first.message and "lower lift_height (0.02 m works)" in first.message
+    assert "approach_distance" not in first.message and "the bin" not in first.message
+    solved = {change: plans(under, write, change) for change in ("lift_height", "approach_distance")}
+    assert solved == {"lift_height": True, "approach_distance": False}
+
+
+def plans(scenario: dict[str, Any], write: Callable[..., Path], short: str) -> bool:
+    """Whether all is picked with a straight move of 2 cm."""
+    options = {**scenario.get("options", {}), short: 0.02}
+    return mg.plan_part_supply(write(edited(scenario, "options", options))).outcome == mg.Outcome.solved

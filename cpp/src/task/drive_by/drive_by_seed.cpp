@@ -48,10 +48,13 @@ SeededProblem DriveBySeeds::make(const ConfigurationSequence& sequence, int wayp
   a.times = segment_times(group_, a.via_points);
   std::vector<GuidedWay> ways;
   if (route) {
-    // A way may take full turns: the goal is that much further round.
-    const VectorXd turns = route->via_points.back() - a.via_points.back();
-    a.problem.goal_lower += turns;
-    a.problem.goal_upper += turns;
+    // A way may take full turns: what the goal fixes is that much further round.
+    for (Eigen::Index i = 0; i < start_.size(); ++i) {
+      if (goal_.lower[i] != goal_.upper[i]) continue;
+      const double turns = route->via_points.back()[i] - a.via_points.back()[i];
+      a.problem.goal_lower[i] += turns;
+      a.problem.goal_upper[i] += turns;
+    }
     a.via_points = route->via_points;
     ways = route->ways;
     for (std::size_t k = 0; k < ways.size(); ++k)

@@ -25,9 +25,9 @@ void keep_straight(SeededProblem& a, std::size_t segment, const DriveByStep& ste
 }  // namespace
 
 int dwell_intervals(double dwell) {
-  constexpr double kLongest = 0.2;  // [s]
+  constexpr double kLongest = 0.12, kFewest = 5;  // [s]
   constexpr double kMostIntervals = 100;
-  return static_cast<int>(std::clamp(std::ceil(dwell / kLongest), 4.0, kMostIntervals));
+  return static_cast<int>(std::clamp(std::ceil(dwell / kLongest), kFewest, kMostIntervals));
 }
 
 VectorXd goal_near(const DriveByGoal& goal, const VectorXd& q) {

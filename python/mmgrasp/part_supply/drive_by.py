@@ -233,15 +233,14 @@ def _in_passing(known: KnownPick, progress: Progress, options: DriveByOptions) -
         if result.outcome == Outcome.solved:
             break
     else:
-        start, end = motion["positions"][0], motion["positions"][-1]
         keywords = {"iterations": 600, **keywords}
         result = _core.plan_drive_by(
             group.robot,
             group,
             world,
-            start=start,
+            start=motion["positions"][0],
             tasks=tasks,
-            goal=known.goal(start, end),
+            goal=known.goal(motion["positions"][-1]),
             progress=forward,
             **keywords,
         )

@@ -138,12 +138,10 @@ class KnownPick:
         positions = np.array(rows)
         return {"times": times, "positions": positions if leg else positions[:, 3:], "task_times": reached}
 
-    def goal(self, first: np.ndarray, last: np.ndarray) -> np.ndarray:
-        """The last row as a box (2, n), so that joints more than half a turn away are reached as they stand: the next motion begins there."""
+    def goal(self, last: np.ndarray) -> np.ndarray:
+        """The last row as a box (2, n): what is one number may be reached up to full turns, but the next motion begins at the arm's numbers."""
         box = np.array([last, last], float)
-        far = np.abs(last - first) > np.pi
-        far[: 3 if self.drives else 0] = False
-        box[:, far] += np.array([[-WITHIN], [WITHIN]])
+        box[:, 3 if self.drives else 0 :] += np.array([[-WITHIN], [WITHIN]])
         return box
 
 

@@ -10,15 +10,20 @@
 namespace mmgrasp {
 namespace {
 
+ReachOptions samples_drawn(std::int64_t count) {
+  ReachOptions reach;
+  reach.samples = count;
+  return reach;
+}
+
 /// No false cells; of the feasible ones at most this share is missed.
-void expect_true_cells(const testing_support::MobileManipulator& robot, int samples, double missed) {
+void expect_true_cells(const testing_support::MobileManipulator& robot, int samples, double missed,
+                       const ReachOptions& reach = samples_drawn(400000)) {
   testing_support::RowOptions row;
   row.rows = row.columns = 2;
   row.grasps = 2;
   row.tool_height = 0.07;
   const PartSupplyProblem problem = testing_support::tray_row(robot, row);
-  ReachOptions reach;
-  reach.samples = 400000;
   const ReachDatabase database = ReachDatabase::build(robot.arm, reach);
   const BaseGrid grid = make_base_grid(problem, database);
   const std::vector<BaseRegion> regions = compute_base_regions(problem, database, grid);
@@ -43,6 +48,16 @@ TEST(RegionTruth, Tiago) {
 TEST(RegionTruth, Ur10eOnRidgeback) {
   MMGRASP_NEEDS_SHARED_DATA();
   expect_true_cells(testing_support::ur10e_on_ridgeback(MMGRASP_SHARED_DATA), 60, 0.05);
+}
+
+// A database that is sparse in its cells, for few samples or for small cells, leads to the cells nonetheless.
+TEST(RegionTruth, SparseDatabases) {
+  const testing_support::MobileManipulator robot = testing_support::fetchlike(MMGRASP_ASSETS);
+  expect_true_cells(robot, 200, 0.05, samples_drawn(30000));
+  ReachOptions small_cells = samples_drawn(300000);
+  small_cells.position_cell = 0.06;
+  small_cells.rotation_cell = 0.4;
+  expect_true_cells(robot, 200, 0.05, small_cells);
 }
 
 // Six joints in closed form: what the database holds decides nothing, and nor does what was asked before.

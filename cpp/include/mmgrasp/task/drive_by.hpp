@@ -131,8 +131,8 @@ MMGRASP_EXPORT RobotMotion drive_by_motion(const DriveByResult& result, const st
 /// - ways between the configurations, led around obstacles where the straight ones collide;
 /// - time steps, which waypoint belongs to which task, and other seeds when one fails.
 ///
-/// Values that wrap reach the goal up to full turns. Throws InvalidInput for what makes no sense; no solution is a
-/// value with a report.
+/// Values that wrap reach the goal up to full turns where it is one number, and an interval of it as it stands. Throws
+/// InvalidInput for what makes no sense; no solution is a value with a report.
 /// @code
 ///   DriveByTask pick;
 ///   pick.candidates = {T_world_part * grasp.T_object_hand};

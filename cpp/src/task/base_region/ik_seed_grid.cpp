@@ -1,5 +1,6 @@
 #include "task/base_region/ik_seed_grid.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "mmgrasp/core/detail/no_time_limit.hpp"
@@ -11,8 +12,8 @@ namespace {
 
 constexpr int kFruitless = 2;    // Seeds without a solution after which a node counts as out of reach.
 constexpr int kIterations = 20;  // Most of one IK search: from a stored configuration near by a success takes 4 to 10.
-constexpr double kFar =
-    1.2;  // Distance in cells of the database: a node without a stored configuration so near is out of reach.
+constexpr double kFar = 1.2;  // A node is out of reach without a stored configuration so near [cells of the database],
+                              // where the database is as dense as by its defaults.
 constexpr double kSameConfiguration = 1e-3;  // Configurations nearer than this are one [rad or m].
 constexpr double kPerUnit =
     8;  // Cells per unit of a rotation matrix's entries, centred on 0 and 1, so that upright tools are.
@@ -40,6 +41,15 @@ Eigen::Matrix3d rotation_of(const std::array<int, 7>& key) {
   return R;
 }
 
+/// kFar for this database: the distance from a reachable pose to the nearest of N configurations drawn in six
+/// dimensions grows with their sixth root.
+double far_in(const ReachOptions& cells) {
+  const auto in_a_cell = [](const ReachOptions& options) {
+    return static_cast<double>(options.samples) * std::pow(options.position_cell * options.rotation_cell, 3);
+  };
+  return kFar * std::max(1.0, std::pow(in_a_cell(ReachOptions()) / in_a_cell(cells), 1.0 / 6));
+}
+
 bool six_joints_in_closed_form(const JointGroup& arm) {
   const Screws screws = screws_of(arm);
   return screws.size == 6 && closed_form_of(screws).family != ClosedForm::Family::none;
@@ -48,7 +58,11 @@ bool six_joints_in_closed_form(const JointGroup& arm) {
 }  // namespace
 
 IkSeedGrid::IkSeedGrid(const JointGroup& arm, const ReachDatabase& database, int seeds)
-    : arm_(arm), database_(database), seeds_(seeds), closed_form_(six_joints_in_closed_form(arm)) {
+    : arm_(arm),
+      database_(database),
+      seeds_(seeds),
+      far_(far_in(database.options())),
+      closed_form_(six_joints_in_closed_form(arm)) {
   ik_.max_iterations = kIterations;
   ik_.time_limit = kNoTimeLimit;
 }
@@ -146,7 +160,7 @@ void IkSeedGrid::Node::start(const IkSeedGrid& grid, const Pose& T_base_node) {
   const Pose T = grid.arm_.fk(configurations_.col(0));
   const double away = (T.translation() - T_base_node.translation()).norm() / cells.position_cell +
                       rotation_distance(T, T_base_node) / cells.rotation_cell;
-  if (away > kFar) fruitless_ = 0;
+  if (away > grid.far_) fruitless_ = 0;
 }
 
 /// Looks for one more configuration; false when there is none left to look for.

@@ -85,6 +85,7 @@ class IkSeedGrid {
   JointGroup arm_;
   ReachDatabase database_;
   int seeds_;
+  double far_;  ///< Distance beyond which no stored configuration counts [cells of the database].
   bool closed_form_;
   IkOptions ik_;
   mutable std::mutex mutex_;

@@ -25,9 +25,9 @@ void keep_straight(SeededProblem& a, std::size_t segment, const DriveByStep& ste
 }  // namespace
 
 int dwell_intervals(double dwell) {
-  constexpr double kLongest = 0.2;  // [s]
+  constexpr double kLongest = 0.12, kFewest = 5;  // [s]
   constexpr double kMostIntervals = 100;
-  return static_cast<int>(std::clamp(std::ceil(dwell / kLongest), 4.0, kMostIntervals));
+  return static_cast<int>(std::clamp(std::ceil(dwell / kLongest), kFewest, kMostIntervals));
 }
 
 VectorXd goal_near(const DriveByGoal& goal, const VectorXd& q) {
@@ -48,10 +48,13 @@ SeededProblem DriveBySeeds::make(const ConfigurationSequence& sequence, int wayp
   a.times = segment_times(group_, a.via_points);
   std::vector<GuidedWay> ways;
   if (route) {
-    // A way may take full turns: the goal is that much further round.
-    const VectorXd turns = route->via_points.back() - a.via_points.back();
-    a.problem.goal_lower += turns;
-    a.problem.goal_upper += turns;
+    // A way may take full turns: what the goal fixes is that much further round.
+    for (Eigen::Index i = 0; i < start_.size(); ++i) {
+      if (goal_.lower[i] != goal_.upper[i]) continue;
+      const double turns = route->via_points.back()[i] - a.via_points.back()[i];
+      a.problem.goal_lower[i] += turns;
+      a.problem.goal_upper[i] += turns;
+    }
     a.via_points = route->via_points;
     ways = route->ways;
     for (std::size_t k = 0; k < ways.size(); ++k)

@@ -9,7 +9,8 @@
 
 namespace mmgrasp::detail {
 
-/// Intervals of a task that takes time: a pose pinned at waypoints 0.2 s apart strays less than 1 mm between them.
+/// Intervals of a task that takes time: a pose pinned at waypoints 0.12 s apart hardly strays between them (at 0.2 s by
+/// 0.02 rad now and then, which check_whole_body() refuses).
 int dwell_intervals(double dwell);
 
 /// A configuration sequence as a problem for the optimiser, with the guess that it starts from.

@@ -113,6 +113,13 @@ std::optional<DriveByRoute> DriveBySolver::route(const ConfigurationSequence& se
     route.via_points.back() = way->points.back();
     route.ways.back() = std::move(*way);
   }
+  // A value that the goal fixes may end full turns away, one in an interval ends in it.
+  constexpr double kRounding = 1e-6;
+  const VectorXd& end = route.via_points.back();
+  for (Eigen::Index i = 0; i < end.size(); ++i) {
+    if (goal_.lower[i] == goal_.upper[i]) continue;
+    if (end[i] < goal_.lower[i] - kRounding || end[i] > goal_.upper[i] + kRounding) return {};
+  }
   return route;
 }
 

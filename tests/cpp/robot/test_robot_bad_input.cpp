@@ -122,6 +122,15 @@ std::vector<test::BadCase> bad_cases() {
        {"\"k\"", "fixed"}},
       {"no geometry", robot("<link name=\"a\"><collision/></link>"), {"<geometry>", "link \"a\""}},
       {"empty geometry", shape(""), {"geometry", "empty"}},
+      // A misspelt element was passed over, and the robot was another one than its file says.
+      {"misspelt link", robot("<link name=\"a\"/>\n<Link name=\"b\"/>"), {":3", "<Link", "did you mean", "link"}},
+      {"misspelt collision", robot("<link name=\"a\"><colision/></link>"), {"<colision>", "link", "collision"}},
+      {"misspelt geometry",
+       robot("<link name=\"a\"><collision><geometry><box size=\"1 1 1\"/></geometry><orgin xyz=\"1 0 0\"/>"
+             "</collision></link>"),
+       {"<orgin>", "<collision>", "origin"}},
+      {"misspelt limit", joint(kLimit + "<limits lower=\"0\" upper=\"1\"/>"), {"<limits>", "<joint>", "limit"}},
+      {"misspelt axis", joint(kLimit + "<axes xyz=\"0 0 1\"/>"), {"<axes>", "<joint>", "axis"}},
       {"unknown shape", shape("<cone radius=\"1\"/>"), {"<cone>", "unknown"}},
       {"zero box", shape("<box size=\"0.1 0 0.1\"/>"), {"<box>", "link \"a\"", "0.1 0 0.1", "positive"}},
       {"negative sphere", shape("<sphere radius=\"-1\"/>"), {"radius = \"-1\"", "positive"}},
@@ -170,6 +179,16 @@ TEST(RobotBadInput, UnknownLimitsAreWarnings) {
       joint("<limit lower=\"0\" upper=\"1\" velocity=\"1\" acceleration=\"2\"/><origin tool:id=\"3\" xyz=\"1 0 0\"/>"));
   ASSERT_EQ(robot.report().warnings.size(), 1u);
   EXPECT_NE(robot.report().warnings[0].find("\"acceleration\" is not read"), std::string::npos);
+}
+
+TEST(RobotBadInput, ElementsThatNobodyKnowsAreToldOnce) {
+  std::string urdf = joint(kLimit + "<spring/><dynamics friction=\"1\"/><tool:origin/>");
+  urdf.insert(urdf.find("<link"),
+              "<property name=\"left_over\"/><property name=\"twice\"/><gazebo><colision/></gazebo>");
+  const std::vector<std::string> warnings = Robot::from_strings(urdf).report().warnings;
+  ASSERT_EQ(warnings.size(), 2u);
+  EXPECT_NE(warnings[0].find("<spring>"), std::string::npos) << warnings[0];
+  EXPECT_NE(warnings[1].find("<property"), std::string::npos) << warnings[1];
 }
 
 TEST(RobotBadInput, JointsNamedAsTheBase) {

@@ -36,6 +36,7 @@ class UrdfReader {
       if (e->ValueStr() == "link") read_link(*e);
       if (e->ValueStr() == "joint") read_joint(*e);
     }
+    check_children(root, {"link", "joint"}, {"material", "transmission", "gazebo", "sensor", "ros2_control"});
     return std::move(parts_);
   }
 
@@ -67,6 +68,23 @@ class UrdfReader {
       std::string rule;
       for (const std::string& other : known) rule += (rule.empty() ? "" : ", ") + other;
       xml_.fail(element, "attribute \"" + name + "\" is unknown: must be one of " + rule + near_miss(name, known));
+    }
+  }
+
+  /// A misspelt element that places or shapes something would be another robot; others that nobody knows are told once.
+  /// `others` are known and not read here. Names with a prefix are other programs' own.
+  void check_children(const TiXmlElement& parent, const std::vector<std::string>& read,
+                      const std::vector<std::string>& others) {
+    for (const TiXmlElement* e = parent.FirstChildElement(); e; e = e->NextSiblingElement()) {
+      const std::string& name = e->ValueStr();
+      const auto among = [&name](const auto& names) {
+        return std::find(names.begin(), names.end(), name) != names.end();
+      };
+      if (name.find(':') != std::string::npos || among(read) || among(others)) continue;
+      const std::string meant = near_miss(name, read);
+      if (!meant.empty()) xml_.fail(*e, "is no element of <" + parent.ValueStr() + ">" + meant);
+      if (untold_.insert(parent.ValueStr() + "/" + name).second)
+        warn(*e, "is no element of <" + parent.ValueStr() + ">: not read");
     }
   }
 
@@ -103,6 +121,7 @@ class UrdfReader {
   void read_link(const TiXmlElement& element) {
     Link link;
     link.name = read_name(element, link_names_, "link");
+    check_children(element, {"collision", "inertial"}, {"visual", "contact", "sensor", "gazebo"});
     for (const TiXmlElement* e = element.FirstChildElement("collision"); e; e = e->NextSiblingElement("collision"))
       link.collisions.push_back(read_collision(*e));
     if (const TiXmlElement* inertial = element.FirstChildElement("inertial")) read_inertial(link.name, *inertial);
@@ -128,6 +147,7 @@ class UrdfReader {
 
   LinkShape read_collision(const TiXmlElement& element) {
     LinkShape shape;
+    check_children(element, {"origin", "geometry"}, {"material", "verbose", "contact_coefficients"});
     shape.T_link_shape = read_origin(element);
     const TiXmlElement* geometry = element.FirstChildElement("geometry");
     if (!geometry) xml_.fail(element, "<geometry> is missing");
@@ -176,6 +196,8 @@ class UrdfReader {
     joint.name = read_name(element, joint_names_, "joint");
     named.place = xml_.where(element);
     joint.type = read_type(element);
+    check_children(element, {"parent", "child", "origin", "axis", "limit", "mimic"},
+                   {"dynamics", "calibration", "safety_controller"});
     named.parent = read_link_reference(element, "parent");
     named.child = read_link_reference(element, "child");
     joint.T_parent_joint = read_origin(element);
@@ -262,7 +284,7 @@ class UrdfReader {
 
   XmlDocument xml_;
   RobotParts parts_;
-  std::set<std::string> link_names_, joint_names_;
+  std::set<std::string> link_names_, joint_names_, untold_;
 };
 
 }  // namespace

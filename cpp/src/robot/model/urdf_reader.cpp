@@ -82,9 +82,9 @@ class UrdfReader {
       };
       if (name.find(':') != std::string::npos || among(read) || among(others)) continue;
       const std::string meant = near_miss(name, read);
-      if (!meant.empty()) xml_.fail(*e, "is no element of <" + parent.ValueStr() + ">" + meant);
+      if (!meant.empty()) xml_.fail(*e, "is unknown in <" + parent.ValueStr() + ">" + meant);
       if (untold_.insert(parent.ValueStr() + "/" + name).second)
-        warn(*e, "is no element of <" + parent.ValueStr() + ">: not read");
+        warn(*e, "is ignored: unknown in <" + parent.ValueStr() + ">");
     }
   }
 

@@ -350,7 +350,7 @@ void bind_object_path(py::module_& m) {
           "evaluate",
           [](E& evaluator, const Given<Grasp>& given) {
             const Grasp grasp = taken(given, "grasp");
-            return evaluator.evaluate(grasp);
+            return interruptible([&] { return evaluator.evaluate(grasp); });
           },
           "grasp"_a, "The least cost over all arm configurations, or how far the grasp is from allowed.");
   m.def(

@@ -7,6 +7,7 @@
 
 #include "mapping/sdf/frame_checks.hpp"
 #include "mapping/sdf/frame_planes.hpp"
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/limits.hpp"
@@ -221,6 +222,7 @@ class Registration {
     const Matrix6 prior = (from_pose * covariance_ * from_pose.transpose()).inverse();
     double trusted = 2 * options_.max_distance;
     for (;; ++out.iterations, trusted *= 0.5) {
+      detail::throw_if_interrupted();
       const Pose T = moved(given_, motions.to_pose * error);
       const System system = assemble(points_, matcher_.at(T), motions, T, trusted);
       out.matched = system.matched;

@@ -5,6 +5,7 @@
 #include <map>
 #include <numeric>
 
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/limits.hpp"
@@ -115,6 +116,7 @@ Configurations ObjectPathEvaluator::Impl::find(const Poses& T_world_hand, Object
   solver->place_bases(T_world_hand);
   VectorXd last = options.single_configuration ? configuration_of(*group) : VectorXd();
   for (std::size_t i = 0; i < T_world_hand.size(); ++i) {
+    detail::throw_if_interrupted();
     const Vector6d motion = i == 0 ? Vector6d::Zero().eval() : pose_difference(T_world_hand[i - 1], T_world_hand[i]);
     detail::PathConfigurations::Layer layer = options.single_configuration
                                                   ? solver->single(T_world_hand[i], motion, last)
@@ -137,6 +139,7 @@ Configurations ObjectPathEvaluator::Impl::find(const Poses& T_world_hand, Object
 bool ObjectPathEvaluator::Impl::is_free(Configurations& found, std::size_t layer, int i, ObjectPathResult& result) {
   char& known = found.known[layer][i];
   if (known == 0) {
+    detail::throw_if_interrupted();
     const VectorXd q = found.q[layer].col(i);
     const Rejection verdict = checker->is_free(q) ? Rejection::none : checker->rejection(q);
     if (verdict != Rejection::none) result.rejections.add(verdict);
@@ -171,6 +174,7 @@ ConfigurationGraph ObjectPathEvaluator::Impl::graph(const Configurations& found)
   const auto& wraps = group->wraps();
   std::vector<int> order;
   for (std::size_t layer = 0; layer + 1 < sizes.size(); ++layer) {
+    detail::throw_if_interrupted();
     // When there are many configurations only those are tried that are near in the value that spreads most.
     const MatrixXd& q = found.q[layer];
     Eigen::Index value = -1;
@@ -223,6 +227,7 @@ void ObjectPathEvaluator::Impl::bend(const Grasp& grasp, ObjectPathResult& resul
   if (!problem.frame) return;
   const SupportedFrame held(*problem.frame, {beam_support(grasp)});
   for (const Pose& T : problem.T_world_object) {
+    detail::throw_if_interrupted();
     const Eigen::Vector3d gravity = gravity_in_object(T, options.gravity);
     bool yields = false;
     if (stress_limited) {
@@ -335,6 +340,7 @@ ObjectPathResult ObjectPathEvaluator::evaluate(const Grasp& grasp) {
       stands = false;
     }
     for (std::size_t i = 0; stands && i + 1 < path.vertices.size(); ++i) {
+      detail::throw_if_interrupted();
       const std::pair<int, int> ends(path.vertices[i], path.vertices[i + 1]);
       if (!checked[i].emplace(ends, true).second) continue;
       const VectorXd from = found.q[i].col(ends.first), to = found.q[i + 1].col(ends.second);

@@ -120,14 +120,17 @@ class LayerSearch {
   /// False when `max_boxes` or the monitor ended it.
   bool run() {
     std::vector<Start> starts = cells();
+    if (monitor_.stopped()) return false;
     std::stable_sort(starts.begin(), starts.end(),
                      [](const Start& a, const Start& b) { return a.locals.size() > b.locals.size(); });
     // Large sets first: with them most boxes need no search.
-    for (const Start& start : starts) add_at({start.window.x0 + 0.5, start.window.y0 + 0.5}, start.locals, {});
-    for (std::size_t i = 0; i < starts.size(); ++i) {
-      if (i % 256 == 0 && monitor_.stopped()) return false;
-      search(starts[i].window, std::move(starts[i].locals), {});
-      if (boxes_ > max_boxes_) return false;
+    for (const Start& start : starts) {
+      if (monitor_.stopped()) return false;
+      add_at({start.window.x0 + 0.5, start.window.y0 + 0.5}, start.locals, {});
+    }
+    for (Start& start : starts) {
+      search(start.window, std::move(start.locals), {});
+      if (boxes_ > max_boxes_ || monitor_.stopped()) return false;
     }
     return true;
   }
@@ -136,6 +139,7 @@ class LayerSearch {
   void settle(const RegionPatches& patches, int heading, double least) {
     const BaseGrid& grid = patches.grid();
     for (const std::vector<TrayId>& set : open_) {
+      if (monitor_.stopped()) return;
       if (found_.covers(set)) continue;
       const Intersection place = patches.shared(set, heading);
       const Eigen::Vector2d at = (place.centre - grid.origin) / grid.resolution;
@@ -164,7 +168,7 @@ class LayerSearch {
   std::vector<Start> cells() const {
     std::vector<std::pair<std::pair<int, int>, Local>> items;
     for (const Patch& patch : patches_) {
-      for (int iy = patch.y0; iy < patch.y0 + patch.ny; ++iy) {
+      for (int iy = patch.y0; iy < patch.y0 + patch.ny && !monitor_.stopped(); ++iy) {
         for (int ix = patch.x0; ix < patch.x0 + patch.nx; ++ix) {
           if (!patch.has(ix, iy)) continue;
           Local local{patch.tray, {}};
@@ -210,7 +214,7 @@ class LayerSearch {
   }
 
   void search(const Window& window, std::vector<Local> locals, std::vector<TrayId> proven) {
-    if (++boxes_ > max_boxes_) return;
+    if (++boxes_ > max_boxes_ || monitor_.stopped()) return;
     for (std::size_t i = 0; i < locals.size();) {
       std::vector<Square> squares;
       const bool possible = limit(locals[i].squares, window, squares);
@@ -291,6 +295,10 @@ Intersections maximal_intersections(const RegionPatches& patches, double min_rad
     result.complete = search.run() && result.complete;
     search.settle(patches, heading, min_radius - kRadiusSlack);
     for (const Found& found : search.found().sorted()) {
+      if (monitor.stopped()) {
+        result.complete = false;
+        return result;
+      }
       ++result.sets_tried;
       Intersection place = patches.shared(found.trays, heading);
       if (place.radius < min_radius) {  // by a rounding

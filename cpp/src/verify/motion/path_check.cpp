@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "verify/context.hpp"
 
@@ -54,6 +55,7 @@ class PathWalk {
   }
 
   bool is_good(const Eigen::VectorXd& q, std::size_t edge, double at) {
+    mmgrasp::detail::throw_if_interrupted();
     ++result_.configurations_checked;
     const Kinematics& kinematics = judge_.kinematics();
     const std::string place = "edge " + std::to_string(edge) + " at " + text(at) + ": ";

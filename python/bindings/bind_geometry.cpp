@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "bindings.hpp"
+#include "long_call.hpp"
 #include "mmgrasp/geometry/mesh.hpp"
 #include "mmgrasp/geometry/shape.hpp"
 #include "mmgrasp/geometry/simplify_mesh.hpp"
@@ -80,8 +81,11 @@ void bind_primitives(py::module_& m) {
       .def(py::init([](const ArrayLike& centres, double resolution) {
              const Eigen::MatrixXd rows = matrix_argument(centres, "centres", 3);
              auto points = std::make_shared<std::vector<Eigen::Vector3d>>();
-             for (Eigen::Index i = 0; i < rows.rows(); ++i) points->push_back(rows.row(i).transpose());
-             return checked(Voxels{points, resolution}, "voxels");
+             return interruptible([&] {
+               points->reserve(rows.rows());
+               for (Eigen::Index i = 0; i < rows.rows(); ++i) points->push_back(rows.row(i).transpose());
+               return checked(Voxels{points, resolution}, "voxels");
+             });
            }),
            py::arg("centres"), py::arg("resolution"), "`centres` (m, 3) of cubes with edge `resolution` [m], > 0.")
       .def_property_readonly(

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "bindings.hpp"
+#include "long_call.hpp"
 #include "mmgrasp/task/base_route.hpp"
 #include "mmgrasp/task/drive_by.hpp"
 #include "motion_message.hpp"
@@ -131,10 +132,11 @@ void bind_robot_motion(py::module_& m) {
           "What the gripper does, in order: time and duration [s], command (open or close), opening [m] or None, "
           "object.")
       .def_property_readonly("duration", &M::duration, "[s]")
-      .def("to_csv", &M::to_csv,
-           "Header time, base.x, base.y, base.theta, base.v, base.vy, base.omega, joints, name.velocity, "
-           "name.acceleration, and\n"
-           "gripper, where it does anything (what it begins to do up to the row's time).")
+      .def(
+          "to_csv", [](const M& t) { return interruptible([&] { return t.to_csv(); }); },
+          "Header time, base.x, base.y, base.theta, base.v, base.vy, base.omega, joints, name.velocity, "
+          "name.acceleration, and\n"
+          "gripper, where it does anything (what it begins to do up to the row's time).")
       .def(
           "to_joint_trajectory", &motion_message,
           "A dict shaped like a ROS trajectory_msgs/JointTrajectory, with base_pose and base_twist at every point, and "

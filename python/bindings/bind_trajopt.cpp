@@ -4,6 +4,7 @@
 #include "bindings.hpp"
 #include "checker_argument.hpp"
 #include "drive_by_arguments.hpp"
+#include "long_call.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/optim/nlp_solver.hpp"
 #include "mmgrasp/task/drive_by.hpp"
@@ -213,12 +214,16 @@ void bind_trajectory_class(py::module_& m) {
       .def(
           "rolled_out", [](const T& t, int steps) { return rows_to_array(t.rolled_out(steps)); }, py::arg("steps") = 64,
           "(k, n): where the robot is at the waypoints when only the drive velocities are followed from the first one.")
-      .def("sampled", &T::sampled, py::arg("between") = 0,
-           "A JointTrajectory of all waypoints and of `between` samples after each; x, y, theta first, with their "
-           "velocities.")
-      .def("to_csv", &T::to_csv, py::arg("between") = 0,
-           "Header time, names, name.velocity, name.acceleration, base.v, base.vy, base.omega, wheel.left, "
-           "wheel.right.")
+      .def(
+          "sampled", [](const T& t, int between) { return interruptible([&] { return t.sampled(between); }); },
+          py::arg("between") = 0,
+          "A JointTrajectory of all waypoints and of `between` samples after each; x, y, theta first, with their "
+          "velocities.")
+      .def(
+          "to_csv", [](const T& t, int between) { return interruptible([&] { return t.to_csv(between); }); },
+          py::arg("between") = 0,
+          "Header time, names, name.velocity, name.acceleration, base.v, base.vy, base.omega, wheel.left, "
+          "wheel.right.")
       .def("__len__", &T::size)
       .def("__repr__", [](const T& t) {
         return "WholeBodyTrajectory(" + std::to_string(t.size()) + " waypoints, " +
@@ -258,11 +263,14 @@ void bind_drive_by_result(py::module_& m) {
       .def_readonly("iterations", &DriveByResult::iterations, "Iterations of the optimiser, over all solves.")
       .def_readonly("seconds", &DriveByResult::seconds, "Wall-clock time of the call [s].")
       .def_readonly("report", &DriveByResult::report, "What was tried, and what is broken where, by how much.")
-      .def("to_csv", &drive_by_csv, py::arg("between") = 0,
-           "The trajectory's to_csv with two columns more: task, its index in the row of a task's waypoint, and "
-           "attached, "
-           "the "
-           "object in the hand.")
+      .def(
+          "to_csv",
+          [](const DriveByResult& r, int between) { return interruptible([&] { return drive_by_csv(r, between); }); },
+          py::arg("between") = 0,
+          "The trajectory's to_csv with two columns more: task, its index in the row of a task's waypoint, and "
+          "attached, "
+          "the "
+          "object in the hand.")
       .def(
           "to_dict",
           [](const DriveByResult& r) {

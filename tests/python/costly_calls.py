@@ -106,7 +106,7 @@ GIVEN_UP = 30  # [s] of processor time for one call and what it needs
 
 CHECKER = OBJECTS["CollisionChecker"]
 AHEAD = ARM.fk(Q + [0, 0, 0.2])
-FAR = mg.pose([50, 0, 0])
+TURNED = POSE @ mg.pose([0, 0, 0], rpy=[0.4, 0.4, 0.4])  # within reach, not for three joints
 
 COSTLY: dict[str, Callable[[], CALL]] = {
     "Robot.load": robot_file,
@@ -115,9 +115,9 @@ COSTLY: dict[str, Callable[[], CALL]] = {
     "with_sampled_pairs": of(long_chain, lambda r: _core.with_sampled_pairs(r)),
     "JointGroup.fk_batch": of(rows_of_arm, ARM.fk_batch),
     "JointGroup.jacobian_batch": of(rows_of_arm, ARM.jacobian_batch),
-    "JointGroup.manipulability_batch": of(rows_of_arm, ARM.manipulability_batch),
-    "JointGroup.ik": lambda: lambda: ARM.ik(FAR, seed=Q, restarts=HUGE, time_limit=1000),
-    "JointGroup.ik_all": lambda: lambda: ARM.ik_all(FAR, count=10**6, restarts=HUGE, time_limit=1000),
+    "JointGroup.manipulability_batch": of(lambda: rows_of_arm(30_000_000), ARM.manipulability_batch),
+    "JointGroup.ik": lambda: lambda: ARM.ik(TURNED, seed=Q, restarts=HUGE, time_limit=1000),
+    "JointGroup.ik_all": lambda: lambda: ARM.ik_all(TURNED, count=10**6, restarts=HUGE, time_limit=1000),
     "Mesh.from_arrays": of(lambda: lw.grid(700), lambda m: mg.Mesh.from_arrays(*m)),
     "Mesh.load": of(stl, mg.Mesh.load),
     "_file_is_inside_out": of(stl, _core._file_is_inside_out),
@@ -126,17 +126,17 @@ COSTLY: dict[str, Callable[[], CALL]] = {
     "World.add_mesh": scene_file,
     "World.add_octree": octree_file,
     "World.add_points": of(lambda: CLOUD(5_000_000), lambda p: mg.World().add_points("p", p, 0.0005)),
-    "World.add_field": lambda: lambda: mg.World().add_field("f", ao.distance_field(), resolution=0.002),
+    "World.add_field": lambda: repeated(1000, lambda: mg.World().add_field("f", ao.distance_field(), resolution=0.002)),
     "World.add_sdf": of(fine_sdf, lambda s: repeated(50, lambda: mg.World().add_sdf("s", s))()),
-    "World.add_occupancy": of(fine_occupancy, lambda o: repeated(50, lambda: mg.World().add_occupancy("o", o))()),
-    "Voxels": of(lambda: CLOUD(5_000_000), lambda p: _core.Voxels(p, 0.0005)),
+    "World.add_occupancy": of(fine_occupancy, lambda o: repeated(5000, lambda: mg.World().add_occupancy("o", o))()),
+    "Voxels": of(lambda: CLOUD(20_000_000), lambda p: _core.Voxels(p, 0.0005)),
     "MeshDistanceField": of(lambda: slab(400), _core.MeshDistanceField),
     "DistanceField.distances": of(points, lambda p: ao.distance_field().distances(p)),
     "DistanceField.distances_and_gradients": of(points, lambda p: ao.distance_field().distances_and_gradients(p)),
     "CollisionChecker": of(slab, lambda m: lw.checker_of(m)()),
     "CollisionChecker.are_free": of(rows_of_arm, CHECKER().are_free),
-    "CollisionChecker.check_edge": lambda: lambda: CHECKER().check_edge(Q, -Q, joint_step=1e-12),
-    "CollisionChecker.edge_is_free": lambda: lambda: CHECKER().edge_is_free(Q, -Q, joint_step=1e-12),
+    "CollisionChecker.check_edge": lambda: lambda: CHECKER().check_edge(Q, Q / 2, joint_step=1e-9),
+    "CollisionChecker.edge_is_free": lambda: lambda: CHECKER().edge_is_free(Q, Q / 2, joint_step=1e-9),
     "ReachDatabase.build": lambda: lambda: mg.ReachDatabase.build(ARM, samples=2_000_000_000),
     "ReachDatabase.build_to": of(folder, lambda f: mg.ReachDatabase.build_to(f / "d", ARM, samples=2_000_000_000)),
     "ReachDatabase.build_parts": of(
@@ -166,7 +166,7 @@ COSTLY: dict[str, Callable[[], CALL]] = {
     "ProbabilisticSdf.load": loaded_sdf,
     "OccupancyMap.integrate": lambda: integrated(lambda: mg.mapping.OccupancyMap(resolution=0.01)),
     "OccupancyMap.query": of(points, ao.occupancy_map().query),
-    "OccupancyMap.obstacle_cells": of(fine_occupancy, lambda o: [o.obstacle_cells() for _ in range(100)]),
+    "OccupancyMap.obstacle_cells": of(fine_occupancy, lambda o: [o.obstacle_cells() for _ in range(10_000)]),
     "Hand.from_robot": lambda: (
         lambda: mg.Hand.from_robot(ao.seven_joint_hand(), "tcp", approach=[0, 0, 1], closing=[1, 0, 0], postures=10**6)
     ),

@@ -84,8 +84,8 @@ def policy() -> CALL:
 
 def cover() -> CALL:
     regions = [mg.base.BaseRegion(str(i), cells, square(40)) for i, cells in enumerate(masks(60, 40, 0.5))]
-    found = _core.robust_intersections(square(40), regions, 0.02, 60_000).robust
-    return lambda: [_core.cover_from_intersections(square(40), found, 60) for _ in range(100)]
+    found = _core.robust_intersections(square(40), regions, 0.02, 3_000).robust
+    return lambda: [_core.cover_from_intersections(square(40), found, 60) for _ in range(10_000)]
 
 
 def circle() -> CALL:
@@ -393,7 +393,7 @@ def scene_file() -> CALL:
 def octree_file() -> CALL:
     path = folder() / "map.ot"
     fine_occupancy().save(path)
-    return repeated(100, lambda: mg.World().add_octree("m", path))
+    return repeated(5000, lambda: mg.World().add_octree("m", path))
 
 
 def depth_segments() -> CALL:

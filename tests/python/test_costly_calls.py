@@ -104,7 +104,9 @@ def test_every_call_is_costly_or_said_to_be_cheap() -> None:
 def check(names: list[str]) -> None:
     found = list(measured(names))
     assert [one.name for one in found] == names
-    assert [one for one in found if one.how != "interrupted"] == []
+    assert [
+        one for one in found if one.how != "interrupted" and not (one.how == "returned" and one.name in SHORT)
+    ] == []
     assert [one for one in found if one.gap > GAP_CAP or one.reaction > REACTION_CAP] == []
 
 
@@ -112,21 +114,26 @@ def test_some_costly_calls_hear_ctrl_c() -> None:
     check(QUICK)
 
 
-NOT_YET = """
-    JointGroup.ik JointGroup.ik_all JointGroup.manipulability_batch World.add_octree World.add_field World.add_occupancy Voxels
-    CollisionChecker.check_edge CollisionChecker.edge_is_free cover_from_intersections
-    """.split()  # their arguments are still too small or refused, so that they return before Ctrl-C; and all after OccupancyMap.obstacle_cells
-
-
-def seen() -> list[str]:
-    """Those of the table that were seen to end by Ctrl-C: its first part, and some of the others."""
-    names = list(COSTLY)
-    last = names.index("OccupancyMap.obstacle_cells")
-    mended = ["resting_poses", "resting_poses, faces", "inscribed_circle", "jaw_grasps"]
-    returned = {"ObjectRegions.compute", "compute_base_regions", "MeshDistanceField", "CapabilityMap.score", "CapabilityMap.best_base_distance"}  # fmt: skip
-    return [*(n for n in names[:last] if n not in NOT_YET and n not in returned), *mended]
+NOT_YET = (
+    """
+    JointGroup.ik_all World.add_field CollisionChecker.check_edge CollisionChecker.edge_is_free ObjectRegions.compute
+    compute_base_regions _file_is_inside_out Hand.from_robot JointTrajectory.to_csv Pipe.sample_grasps graspability_map hand_masks
+    minimize_derivative_free pairwise_weights plan_motion render_depth WholeBodyTrajectory.rolled_out RobotMotion.of_drive_by
+    """.split()
+    + ["share_stops, few", "register_frame"]
+)
+"""Their arguments in the table are too small or refused, so that they return before Ctrl-C comes (register_frame: 6 s after it)."""
+SHORT = """
+    JointGroup.jacobian_batch Voxels MeshDistanceField DistanceField.distances DistanceField.distances_and_gradients
+    CollisionChecker.are_free CapabilityMap.score CapabilityMap.best_base_distance DepthImage.points ProbabilisticSdf.cast_rays
+    ProbabilisticSdf.distances ProbabilisticSdf.points ProbabilisticSdf.save ProbabilisticSdf.load OccupancyMap.integrate
+    OccupancyMap.query read_pcd run_policy verify.overlapping_bodies WholeBodyTrajectory.sampled
+    """.split()
+"""They take 0.2 to 0.8 s: on a fast machine they may return before Ctrl-C comes."""
+PARTS = 4
 
 
 @pytest.mark.slow
-def test_costly_calls_hear_ctrl_c() -> None:
-    check(seen())
+@pytest.mark.parametrize("part", range(PARTS))
+def test_costly_calls_hear_ctrl_c(part: int) -> None:
+    check([name for name in COSTLY if name not in NOT_YET][part::PARTS])

@@ -18,7 +18,7 @@ Inside = Callable[[np.ndarray], np.ndarray]
 
 @dataclass
 class Part:
-    """`widths`: the diameter, or the three lengths, of each primitive [mm]."""
+    """`widths`: the diameter, the three lengths of a box, or the width and height of a hexagon, of each primitive [mm]."""
 
     name: str
     solid: m3.Manifold
@@ -184,7 +184,7 @@ def bolt(rng: np.random.Generator) -> Part:
     part = Part("bolt", m3.Manifold())
     crest = rng.uniform(3, 8)
     pitch = rng.uniform(0.17, 0.25) * crest
-    part.add(*hexagon(3.4 * crest, 0, 1.4 * crest), 3.4 * crest)
+    part.add(*hexagon(3.4 * crest, 0, 1.4 * crest), 3.4 * crest, 1.4 * crest)
     part.add(*thread(crest, crest - 0.6 * pitch, pitch, 1.4 * crest, 1.4 * crest + 8 * pitch), 2 * crest)
     return part
 

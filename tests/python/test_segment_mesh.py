@@ -33,15 +33,39 @@ def segmented(
     return mesh, truth, mg.grasping.segment_mesh(mesh)
 
 
+def widths_offered(
+    mesh: mg.Mesh, found: mg.grasping.MeshSegmentation
+) -> list[tuple[mg.grasping.MeshSegment, list[float]]]:
+    """Each segment with the widths of its primitive [mm]."""
+    fits = mg.grasping.fit_primitives(mesh, found.labels)
+    return [(segment, [1e3 * w.width for w in fit.widths]) for segment, fit in zip(found.segments, fits, strict=True)]
+
+
 @pytest.mark.slow
-def test_faces_of_composed_parts(tmp_path: Path) -> None:
-    """Every kind of part with and without noise; threads, fillets, holes and bores among them. Each part at least 95 %; all 50: benchmarks/gripper_design/run.py."""
-    shares = {}
-    for k, (part, noise) in enumerate(composed_parts(20)):
-        _, truth, found = segmented(part, noise, k, tmp_path)
+def test_faces_and_widths_of_composed_parts(tmp_path: Path) -> None:
+    """Every kind of part with and without noise; threads, fillets, holes and bores among them, and three pulleys with a flange whose bore ends beyond it.
+
+    Each part has at least 95 % of its faces right, and every width that is offered is one of its primitive's, within 0.1 mm. All 50: benchmarks/gripper_design/run.py.
+    """
+    shares, off = {}, {}
+    offered = 0
+    for k, (part, noise) in enumerate(composed_parts(49)):
+        if k >= 20 and k not in (28, 48):
+            continue
+        mesh, truth, found = segmented(part, noise, k, tmp_path)
         shares[f"{k} {part.name}"] = faces_right(truth, found.labels)
+        for segment, widths in widths_offered(mesh, found):
+            true = part.widths[np.bincount(truth[segment.faces][truth[segment.faces] >= 0]).argmax()]
+            offered += len(widths)
+            off |= {
+                f"{k} {part.name}: {w:.3f} of {true}": miss
+                for w in widths
+                if (miss := np.abs(np.subtract(true, w)).min()) > 0.1
+            }
     worst = sorted(shares.items(), key=lambda item: item[1])[:5]
     assert worst[0][1] >= 0.95, worst
+    assert not off
+    assert offered >= 60
 
 
 @pytest.mark.slow

@@ -79,7 +79,8 @@ FittedPrimitive box_along(const SegmentSurface& s, const Eigen::Matrix3d& axes) 
   const Vector3d size = high - low;
   out.kind = PrimitiveKind::box;
   out.size = s.scale * size;
-  out.volume = out.size.prod();
+  // Around the hull, as the round candidates' is: the end of a bore that runs on must not count for one kind alone.
+  out.volume = std::pow(s.scale, 3) * box.sizes().prod();
   out.deviation = all > 0 ? s.scale * off / all : 0;
   out.T_mesh_primitive.linear() = axes;
   out.T_mesh_primitive.translation() = s.to_mesh(axes * (0.5 * (low + high)));
@@ -222,6 +223,7 @@ std::vector<FittedPrimitive> fit_primitives(const TriangleMesh& mesh, const std:
       round.trim();
       best = std::move(round.primitive);
     }
+    if (best.kind == PrimitiveKind::box) best.volume = best.size.prod();
     best.hull_volume = hull_volume;
     if (monitor.stopped()) return {};
     out.push_back(std::move(best));

@@ -22,11 +22,14 @@ constexpr std::size_t kMostPoints = 3000;
 constexpr int kMostModels = 4;
 constexpr int kSectors = 36;
 constexpr double kLeastTurn = 0.5, kLeastSphere = 0.25, kLeastShare = 0.05;
+/// Of what lies on a model at least this share must lie on no larger one of its kind.
+constexpr double kLeastOwn = 0.5;
 
 struct Cover {
   double area = 0;                            ///< Area of the faces that lie on the model and face outwards.
   double turn = 0;                            ///< Share of the turn around the axis where there are some.
   double deviation = 0;                       ///< Mean distance of their corners.
+  std::vector<int> faces;                     ///< Those faces.
   double low = kInfinity, high = -kInfinity;  ///< Where they begin and end along the axis.
 };
 
@@ -46,6 +49,7 @@ Cover cover_of(const SegmentSurface& s, const RoundFit& fit) {
       out.high = std::max(out.high, (corner - fit.point).dot(fit.axis));
     }
     out.area += s.areas[f];
+    out.faces.push_back(static_cast<int>(f));
     out.deviation += s.areas[f] * off;
     // A wide facet covers all sectors between its corners.
     double low = 0, high = 0;
@@ -126,6 +130,23 @@ FittedPrimitive placed(const SegmentSurface& s, const RoundFit& fit, const Cover
   return out;
 }
 
+/// Without models on faces that a larger one lies on, too: a wall with slivers, or one that runs into a fillet, leaves
+/// points over on which a second, tilted one lies. By area, the largest first.
+void drop_doubles(const SegmentSurface& s, std::vector<std::pair<RoundFit, Cover>>& found) {
+  std::stable_sort(found.begin(), found.end(),
+                   [](const auto& a, const auto& b) { return a.second.area > b.second.area; });
+  std::vector<char> taken(s.areas.size(), 0);
+  std::vector<std::pair<RoundFit, Cover>> kept;
+  for (auto& model : found) {
+    double own = 0;
+    for (const int f : model.second.faces) own += taken[f] ? 0 : s.areas[f];
+    if (own < kLeastOwn * model.second.area) continue;
+    for (const int f : model.second.faces) taken[f] = 1;
+    kept.push_back(std::move(model));
+  }
+  found.swap(kept);
+}
+
 }  // namespace
 
 void RoundCandidate::trim() {
@@ -139,6 +160,7 @@ std::vector<RoundCandidate> round_candidates(const SegmentSurface& s, const Moni
   std::vector<RoundCandidate> out;
   for (const RoundModel model : {RoundModel::cylinder, RoundModel::cone, RoundModel::sphere}) {
     std::vector<Vector3d> points, normals;
+    std::vector<std::pair<RoundFit, Cover>> found;
     const std::size_t stride = 1 + s.points.size() / kMostPoints;
     for (std::size_t i = 0; i < s.points.size(); i += stride) {
       points.push_back(s.points[i]);
@@ -160,14 +182,11 @@ std::vector<RoundCandidate> round_candidates(const SegmentSurface& s, const Moni
         on = std::move(next);
       }
       if (fit) {
-        const Cover cover = cover_of(s, *fit);
+        Cover cover = cover_of(s, *fit);
         const bool sphere = fit->kind == RoundFit::Kind::sphere;
         const bool enough =
             sphere ? cover.area > kLeastSphere * 4 * kPi * fit->radius * fit->radius : cover.turn >= kLeastTurn;
-        if (enough && cover.area > kLeastShare * s.area) {
-          out.push_back({placed(s, *fit, cover), s.to_mesh(fit->point + (cover.low + cover.high) / 2 * fit->axis),
-                         s.scale * (cover.high - cover.low)});
-        }
+        if (enough && cover.area > kLeastShare * s.area) found.emplace_back(*fit, std::move(cover));
       }
       std::vector<char> taken(points.size(), 0);
       for (const int i : on) taken[i] = 1;
@@ -180,6 +199,11 @@ std::vector<RoundCandidate> round_candidates(const SegmentSurface& s, const Moni
       if (rest.size() == points.size()) break;
       points.swap(rest);
       normals.swap(rest_normals);
+    }
+    drop_doubles(s, found);
+    for (const auto& [fit, cover] : found) {
+      out.push_back({placed(s, fit, cover), s.to_mesh(fit.point + (cover.low + cover.high) / 2 * fit.axis),
+                     s.scale * (cover.high - cover.low)});
     }
   }
   return out;

@@ -269,7 +269,7 @@ void bind_path_check(py::module_& m) {
         for (const auto& [name, value] : other_joints) finite_argument(value, "other_joints['" + name + "']");
         check.other_joints = other_joints;
         check.allowed_collisions = allowed_collisions;
-        return interruptible([&] { return verify::check_path(check, joint_step); });
+        return interruptible([&](const Monitor& monitor) { return verify::check_path(check, joint_step, monitor); });
       },
       py::arg("robot"), py::arg("joints"), py::arg("path"), py::arg("bodies"), py::kw_only(),
       py::arg("other_joints") = std::map<std::string, double>{},

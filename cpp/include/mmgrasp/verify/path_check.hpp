@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mmgrasp/core/export.hpp"
+#include "mmgrasp/core/monitor.hpp"
 #include "mmgrasp/robot/robot_source.hpp"
 #include "mmgrasp/verify/plan_to_check.hpp"
 
@@ -33,7 +34,9 @@ struct MMGRASP_EXPORT PathCheckResult {
 /// Looks at a path in steps of at most `joint_step` [rad or m] in any joint, ends included: joint limits (slack 1e-6),
 /// links against each other and against the bodies. The robot read by urdfdom, kinematics by KDL and collisions by FCL,
 /// as check_plan does; the robot's root stands at the origin. Throws InvalidInput on robots it cannot read, names it
-/// does not know, wrong lengths and a step that is not > 0.
-MMGRASP_EXPORT PathCheckResult check_path(const PathToCheck& path, double joint_step = 0.005);
+/// does not know, wrong lengths and a step that is not > 0. Stopped by the monitor, a path is not free: `where` says
+/// so.
+MMGRASP_EXPORT PathCheckResult check_path(const PathToCheck& path, double joint_step = 0.005,
+                                          const Monitor& monitor = {});
 
 }  // namespace mmgrasp::verify

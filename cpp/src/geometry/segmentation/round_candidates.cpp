@@ -22,7 +22,7 @@ constexpr std::size_t kMostPoints = 3000;
 constexpr int kMostModels = 4;
 constexpr int kSectors = 36;
 constexpr double kLeastTurn = 0.5, kLeastSphere = 0.25, kLeastShare = 0.05;
-/// Of what lies on a model at least this share must lie on no larger one of its kind.
+/// Share of a model's area that must lie on no larger one of its kind.
 constexpr double kLeastOwn = 0.5;
 
 struct Cover {

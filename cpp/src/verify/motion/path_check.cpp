@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "verify/context.hpp"
 
@@ -32,8 +31,8 @@ ArmSetup setup_of(const PathToCheck& path, const RobotModel& robot) {
 /// Walks along a path in steps until a configuration is not allowed.
 class PathWalk {
  public:
-  PathWalk(const PathToCheck& path, std::shared_ptr<const Stage> stage, double step)
-      : path_(path), judge_(std::move(stage)), step_(step) {}
+  PathWalk(const PathToCheck& path, std::shared_ptr<const Stage> stage, double step, const Monitor& monitor)
+      : path_(path), judge_(std::move(stage)), step_(step), monitor_(monitor) {}
 
   PathCheckResult run() {
     const auto& points = path_.waypoints;
@@ -55,10 +54,13 @@ class PathWalk {
   }
 
   bool is_good(const Eigen::VectorXd& q, std::size_t edge, double at) {
-    mmgrasp::detail::throw_if_interrupted();
     ++result_.configurations_checked;
     const Kinematics& kinematics = judge_.kinematics();
     const std::string place = "edge " + std::to_string(edge) + " at " + text(at) + ": ";
+    if (monitor_.stopped()) {
+      result_.where = place + "stopped";
+      return false;
+    }
     for (Eigen::Index i = 0; i < q.size(); ++i) {
       if (kinematics.continuous()[i]) continue;
       if (q[i] >= kinematics.lower()[i] - kLimitSlack && q[i] <= kinematics.upper()[i] + kLimitSlack) continue;
@@ -73,12 +75,13 @@ class PathWalk {
   const PathToCheck& path_;
   Judge judge_;
   const double step_;
+  const Monitor& monitor_;
   PathCheckResult result_;
 };
 
 }  // namespace
 
-PathCheckResult check_path(const PathToCheck& path, double joint_step) {
+PathCheckResult check_path(const PathToCheck& path, double joint_step, const Monitor& monitor) {
   require(joint_step > 0 && joint_step <= 1e6, "joint_step", joint_step, "must be positive, at most 1e6 [rad or m]");
   require(!path.waypoints.empty(), "waypoints", "[]", "must hold at least one configuration");
   const auto robot = std::make_shared<const RobotModel>(read_robot(path.robot));
@@ -100,7 +103,7 @@ PathCheckResult check_path(const PathToCheck& path, double joint_step) {
     stage->bodies.push_back(place_body(body.name, body.shapes, body.T_world_body));
   }
   stage->first_part = stage->bodies.size();
-  return PathWalk(path, stage, joint_step).run();
+  return PathWalk(path, stage, joint_step, monitor).run();
 }
 
 }  // namespace mmgrasp::verify

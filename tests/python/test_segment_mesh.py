@@ -47,7 +47,8 @@ def test_faces_and_widths_of_composed_parts(tmp_path: Path) -> None:
 
     Each part has at least 95 % of its faces right, and every width that is offered is one of its primitive's, within 0.1 mm. All 50: benchmarks/gripper_design/run.py.
     """
-    shares, off = {}, {}
+    shares: dict[str, float] = {}
+    off: dict[str, float] = {}
     offered = 0
     for k, (part, noise) in enumerate(composed_parts(49)):
         if k >= 20 and k not in (28, 48):

@@ -13,7 +13,6 @@ from conftest import REPOSITORY
 STORED = REPOSITORY / "docs" / "reproduction"
 
 FAILING = {
-    "p1-figure-4.12": ["hand still, base driving on: at least nine executions in ten hold the bottle"],
     "p1-figure-4.13": [
         "a waypoint of its own: every task is solved",
         "common: fewer tasks are solved, or half as many iterations more are needed",

@@ -51,6 +51,12 @@ void require_within(double value, double low, double high, const std::string& fi
   require(false, field, value, rule + (unit.empty() ? "" : " " + unit));
 }
 
+void require_count(std::int64_t value, std::string_view field, std::int64_t least, std::int64_t most) {
+  if (value >= least && value <= most) return;
+  require(false, std::string(field), std::to_string(value),
+          "must be in [" + std::to_string(least) + ", " + std::to_string(most) + "]");
+}
+
 void require_position(const Eigen::Vector3d& position, const std::string& field) {
   // Messages are put together for what is refused only.
   for (int k = 0; k < 3; ++k) {

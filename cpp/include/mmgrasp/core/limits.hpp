@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -16,6 +17,9 @@ inline constexpr double kLargestLength = 1e6;
 inline constexpr double kSmallestLength = 1e-9;
 /// No other number is larger: moduli [Pa], costs, weights, what a solver is given. Its square and cube are finite.
 inline constexpr double kLargestNumber = 1e15;
+/// No number of iterations, samples or other things to count is larger: one more, or a count beside it, still fits an
+/// int.
+inline constexpr std::int64_t kLargestCount = 2'000'000'000;
 
 /// Throws InvalidInput naming `field`, the rule and `unit` unless value lies in (0, largest], in [0, largest], or
 /// within `largest` of 0.
@@ -36,6 +40,9 @@ MMGRASP_EXPORT void require_coordinate(double value, const std::string& field);
 /// Throws InvalidInput naming `field` unless low <= value <= high; the unit is told with the rule.
 MMGRASP_EXPORT void require_within(double value, double low, double high, const std::string& field,
                                    const std::string& unit);
+/// Throws InvalidInput naming `field` unless least <= value <= most.
+MMGRASP_EXPORT void require_count(std::int64_t value, std::string_view field, std::int64_t least = 1,
+                                  std::int64_t most = kLargestCount);
 /// Throws InvalidInput naming `field` unless every coordinate lies within kLargestLength of 0.
 MMGRASP_EXPORT void require_position(const Eigen::Vector3d& position, const std::string& field);
 /// The same of many points, as columns; the message names the first that does not.

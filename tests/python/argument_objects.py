@@ -187,6 +187,20 @@ def object_regions() -> mg.base.ObjectRegions:
     return mg.base.ObjectRegions.compute(part_supply_problem(), database(), GRID)
 
 
+def manipulation_problem() -> mg.ManipulationProblem:
+    """A box that goes 5 cm aside, held in its middle."""
+    return mg.ManipulationProblem(ARM, world(), BOX, POSE, mg.pose([0, 0.05, 0]) @ POSE, [mg.Grasp(np.eye(4))])
+
+
+def seen_box() -> mg.mapping.DepthImage:
+    return mg.mapping.render_depth([BOX], mg.mapping.PinholeCamera(width=8, height=6), POSE)
+
+
+@functools.cache
+def height_map() -> mg.mapping.HeightMap:
+    return mg.mapping.make_height_map(seen_box(), np.eye(4), [0.2, 0.2], resolution=0.02)
+
+
 def assembly_operation() -> mg.gripper_design.AssemblyOperation:
     return mg.gripper_design.AssemblyOperation(
         [mg.gripper_design.PlacedMesh("part", cube())], [], [np.eye(4), mg.pose([0, 0, 0.1])]

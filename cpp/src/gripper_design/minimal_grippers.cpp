@@ -232,7 +232,7 @@ void MinimalGrippersOptions::check() const {
   require(grid_lengths >= 0 && grid_lengths <= kMaxGrid, "grid_lengths", grid_lengths, "must be from 0 to 10000");
   require((grid_openings == 0) == (grid_lengths == 0), "grid_lengths", grid_lengths,
           "must be 0 if and only if grid_openings is");
-  require(max_nodes > 0, "max_nodes", max_nodes, "must be positive");
+  require_count(max_nodes, "max_nodes");
   require(time_limit > 0, "time_limit", time_limit, "must be positive [s]");
 }
 

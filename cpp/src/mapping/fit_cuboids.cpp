@@ -175,7 +175,7 @@ void CuboidFitOptions::check() const {
   require_length(leaf, "leaf");
   require(leaf < cluster_tolerance, "leaf", leaf,
           "must be less than cluster_tolerance, " + std::to_string(cluster_tolerance));
-  require(min_points >= 8, "min_points", min_points, "must be at least 8");
+  require_count(min_points, "min_points", 8);
   require_within(plane_iterations, 1, 1e6, "plane_iterations", "");
 }
 

@@ -121,7 +121,7 @@ void HeightMap::check() const {
 
 void HeightMapOptions::check() const {
   require_length(resolution, "resolution");
-  require(hole_radius >= 0, "hole_radius", hole_radius, "must be zero or positive");
+  require_count(hole_radius, "hole_radius", 0);
   require(jump > 0, "jump", jump, "must be positive [m]");
 }
 

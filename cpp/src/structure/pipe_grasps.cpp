@@ -67,7 +67,7 @@ void PipeGraspOptions::check() const {
   require(length_spacing >= 1e-6, "length_spacing", length_spacing, "must be at least 1e-6 [m]");
   require_positive(angle_spacing, "angle_spacing", "rad");
   require_not_negative(cost_per_metre, "cost_per_metre", "1/m");
-  require(draws > 0, "draws", draws, "must be positive");
+  require_count(draws, "draws");
 }
 
 PipeGraspOptions pipe_grasp_options(const Hand& hand) {
@@ -103,7 +103,7 @@ Grasp place_pipe_grasp(const Pipe& pipe, int section, double length, double angl
 SampledGrasps sample_pipe_grasps(const Pipe& pipe, int count, const PipeGraspOptions& options) {
   pipe.check();
   options.check();
-  require(count >= 0, "count", count, "must be zero or positive");
+  require_count(count, "count", 0, 1'000'000);
   const int sections = static_cast<int>(pipe.sections.size());
   std::vector<double> up_to(sections);  // room on the sections up to each, that one included [m]
   std::vector<Spacing> taken;

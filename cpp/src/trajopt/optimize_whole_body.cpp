@@ -20,14 +20,14 @@ constexpr double kRepair = 1e-2;   // barrier with which a solution is repaired
 void WholeBodyOptions::check() const {
   make_nlp_solver(solver);
   require(tolerance > 0 && tolerance < 1, "tolerance", tolerance, "must be in (0, 1)");
-  require(max_iterations > 0, "max_iterations", max_iterations, "must be positive");
+  require_count(max_iterations, "max_iterations");
   require(time_limit > 0, "time_limit", time_limit, "must be positive");
   require_not_negative(smoothing, "smoothing");
   require_not_negative(warm_start, "warm_start");
   require_not_negative(margin, "margin");
   require_number(constraint_distance, "constraint_distance");
   require(constraint_distance > margin, "constraint_distance", constraint_distance, "must exceed margin");
-  require(refinements >= 0, "refinements", refinements, "must be at least 0");
+  require_count(refinements, "refinements", 0, 1000);
 }
 
 WholeBodyResult optimize_whole_body(const WholeBodyProblem& problem, const WholeBodyGuess& guess,

@@ -13,6 +13,8 @@ namespace mmgrasp::verify::detail {
 
 using Faults = std::vector<Fault>;
 
+constexpr double kLeastStep = 1e-9;  ///< No path is walked in smaller steps [rad or m].
+
 /// A number for a message: six significant digits.
 std::string text(double value);
 std::string text(const Eigen::Vector3d& x_y_theta);

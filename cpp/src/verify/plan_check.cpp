@@ -110,8 +110,8 @@ std::vector<std::pair<std::size_t, std::size_t>> overlapping_bodies(const std::v
 }
 
 void PlanCheckOptions::check() const {
-  require(joint_step > 0 && joint_step < 1e3, "joint_step", joint_step, "must be positive");
-  require(base_step > 0 && base_step < 1e3, "base_step", base_step, "must be positive");
+  require(joint_step >= kLeastStep && joint_step <= 1e3, "joint_step", joint_step, "must be in [1e-9, 1e3] [rad or m]");
+  require(base_step >= kLeastStep && base_step <= 1e3, "base_step", base_step, "must be in [1e-9, 1e3] [m]");
   require(position_tolerance > 0, "position_tolerance", position_tolerance, "must be positive");
   require(rotation_tolerance > 0, "rotation_tolerance", rotation_tolerance, "must be positive");
   require(samples > 0, "samples", samples, "must be positive");

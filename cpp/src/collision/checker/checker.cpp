@@ -15,7 +15,7 @@ namespace {
 void check_edge_input(const JointGroup& group, const Eigen::VectorXd& q0, const Eigen::VectorXd& q1, double step) {
   check_configuration(group, q0, "q0");
   check_configuration(group, q1, "q1");
-  require_positive(step, "step", "rad or m");
+  require_within(step, 1e-9, kLargestLength, "step", "rad or m");
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/core/parallel.hpp"
 #include "mmgrasp/core/random.hpp"
 
@@ -102,7 +103,7 @@ class Sampler {
 }  // namespace
 
 void DisabledPairsOptions::check() const {
-  require(samples > 0, "samples", std::to_string(samples), "must be > 0");
+  require_count(samples, "samples");
   require(always_fraction > 0 && always_fraction <= 1, "always_fraction", always_fraction, "must be in (0, 1]");
   resolve_threads(threads);  // says what is wrong
 }

@@ -13,7 +13,7 @@
 namespace mmgrasp {
 
 void EdgeOptions::check() const {
-  require_positive(joint_step, "joint_step", "rad or m");
+  require_within(joint_step, 1e-9, kLargestLength, "joint_step", "rad or m");
   require(workspace_step > 0, "workspace_step", workspace_step, "must be > 0 [m]");
   require_positive(tolerance, "tolerance", "m");
   for (Eigen::Index i = 0; i < bend.size(); ++i)

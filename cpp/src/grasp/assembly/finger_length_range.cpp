@@ -305,7 +305,7 @@ void AssemblyGrasp::check() const {
 FingerLengthRange finger_length_range(const AssemblyGrasp& grasp, const AssemblyOperation& operation, double step) {
   grasp.check();
   operation.check();
-  require_positive(step, "step", "m");
+  require_length(step, "step");
   return Range(grasp, operation, step).run();
 }
 

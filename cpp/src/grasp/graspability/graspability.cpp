@@ -23,8 +23,10 @@ struct ItemResult {
   GraspabilityCounts counts;
 };
 
+constexpr double kMostCells = 1e6;  // Wider than any map: 20,000 cells.
+
 int in_cells(double length, double resolution) {
-  return static_cast<int>(std::lround(length / resolution));
+  return static_cast<int>(std::lround(std::min(length / resolution, kMostCells)));
 }
 
 /// The tool frame's rotation when the hand moves along -z and closes along an angle.
@@ -154,14 +156,14 @@ void GraspabilityOptions::check() const {
   const auto not_negative = [](double value, const char* field) { require_not_negative(value, field, "m"); };
   require(orientations > 0 && orientations <= 360, "orientations", orientations, "must be from 1 to 360");
   require(openings > 0 && openings <= 20, "openings", openings, "must be from 1 to 20");
-  require_positive(layer_step, "layer_step", "m");
+  require_length(layer_step, "layer_step");
   require_number(lowest, "lowest", "m");
   require_positive(insertion, "insertion", "m");
   not_negative(margin, "margin");
   not_negative(smoothing, "smoothing");
   require(min_contact > 0 && min_contact <= 1, "min_contact", min_contact, "must be above 0 and at most 1");
   not_negative(min_distance, "min_distance");
-  require(max_grasps > 0, "max_grasps", max_grasps, "must be positive");
+  require_count(max_grasps, "max_grasps", 1, 1'000'000);
   resolve_threads(threads);  // says what is wrong
 }
 

@@ -182,7 +182,7 @@ class Placer {
 }  // namespace
 
 void PlacementOptions::check() const {
-  require(count >= 0, "count", count, "must be zero or positive");
+  require_count(count, "count", 0, 1'000'000);
   require_within(draws, 1, 1'000'000, "draws", "");
   require_positive(clearance, "clearance", "m");
 }

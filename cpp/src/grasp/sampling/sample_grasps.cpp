@@ -97,7 +97,7 @@ void GraspSamplerOptions::check() const {
   const double candidates = static_cast<double>(approaches) * std::max(mesh_samples, positions * positions);
   require(candidates <= kMostCandidates, "approaches", approaches,
           "must be fewer: approaches times mesh_samples, or times positions squared, must be at most 1e6 candidates");
-  require(max_grasps > 0, "max_grasps", max_grasps, "must be positive");
+  require_count(max_grasps, "max_grasps", 1, 1'000'000);
   require_positive(friction, "friction");
   require_number(standoff, "standoff", "m");
 }

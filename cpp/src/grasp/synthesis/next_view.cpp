@@ -159,7 +159,7 @@ void NextViewOptions::check() const {
   require(min_elevation >= -detail::kPi / 2 && min_elevation < max_elevation, "min_elevation", min_elevation,
           "must be from -pi/2 to below max_elevation [rad]");
   require(max_elevation <= detail::kPi / 2, "max_elevation", max_elevation, "must be at most pi/2 [rad]");
-  require(draws > 0, "draws", draws, "must be positive");
+  require_count(draws, "draws");
   require(max_width > 0, "max_width", max_width, "must be positive");
   require(uncertainty.sigma.empty(), "uncertainty.sigma", "given", "must be empty: the camera's noise counts");
   resolve_threads(threads);

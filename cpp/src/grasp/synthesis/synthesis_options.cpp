@@ -42,7 +42,7 @@ void detail::add_verdict(Verdict verdict, SynthesisCounts& counts) {
 void SynthesisOptions::check() const {
   const auto not_negative = [](double value, const char* field) { require_not_negative(value, field); };
   require(samples > 0 && samples <= 1000000, "samples", samples, "must be from 1 to 1000000");
-  require(refined > 0, "refined", refined, "must be positive");
+  require_count(refined, "refined", 1, 1'000'000);
   not_negative(shift, "shift");
   require(max_tilt >= 0 && max_tilt <= 3.2, "max_tilt", max_tilt, "must be in [0, pi] [rad]");
   if (table) require_number(*table, "table", "m");
@@ -56,7 +56,7 @@ void SynthesisOptions::check() const {
   require(approach_distance >= 0 && approach_distance <= 10, "approach_distance", approach_distance,
           "must be in [0, 10] [m]");
   not_negative(min_distance, "min_distance");
-  require(max_grasps > 0, "max_grasps", max_grasps, "must be positive");
+  require_count(max_grasps, "max_grasps", 1, 1'000'000);
   resolve_threads(threads);  // says what is wrong
   success.check();
   patch.check();

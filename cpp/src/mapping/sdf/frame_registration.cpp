@@ -286,8 +286,8 @@ class Registration {
 }  // namespace
 
 void RegistrationOptions::check() const {
-  require(max_points >= kFewest, "max_points", max_points, "must be at least 100");
-  require(max_iterations > 0, "max_iterations", max_iterations, "must be positive");
+  require_count(max_points, "max_points", kFewest);
+  require_count(max_iterations, "max_iterations");
   require_positive(max_distance, "max_distance", "m");
   require(min_overlap > 0 && min_overlap <= 1, "min_overlap", min_overlap, "must be above 0 and at most 1");
   require_positive(max_correction, "max_correction");

@@ -180,7 +180,7 @@ void ObjectSegmentationOptions::check() const {
   require_number(patch, "patch", "m");
   require(patch >= 2 * leaf, "patch", patch, "must be finite and at least 2 leaf [m]");
   require(concavity > 0 && concavity < 2 * kHalfPi, "concavity", concavity, "must be in (0, pi) [rad]");
-  require(min_points > 0, "min_points", min_points, "must be positive");
+  require_count(min_points, "min_points");
   require_within(plane_iterations, 1, 1e6, "plane_iterations", "");
 }
 

@@ -35,7 +35,7 @@ DerivativeFreeSolver::~DerivativeFreeSolver() = default;
 void DerivativeFreeOptions::check() const {
   require(tolerance > 0 && tolerance < 1, "tolerance", tolerance, "must be in (0, 1)");
   require_not_negative(constraint_tolerance, "constraint_tolerance", "", kLargestNumber);
-  require(max_evaluations > 0, "max_evaluations", max_evaluations, "must be positive");
+  require_count(max_evaluations, "max_evaluations");
   require(time_limit > 0, "time_limit", time_limit, "must be positive");
 }
 

@@ -48,7 +48,7 @@ NlpSolver::~NlpSolver() = default;
 void NlpOptions::check() const {
   require(tolerance > 0 && tolerance < 1, "tolerance", tolerance, "must be in (0, 1)");
   require_positive(constraint_tolerance, "constraint_tolerance", "", kLargestNumber);
-  require(max_iterations > 0, "max_iterations", max_iterations, "must be positive");
+  require_count(max_iterations, "max_iterations");
   require(time_limit > 0, "time_limit", time_limit, "must be positive");
   require_not_negative(barrier, "barrier");
   require_not_negative(warm_start, "warm_start");

@@ -44,17 +44,17 @@ void PopulationOptions::check() const {
     require((zero ? value >= 0 : value > 0) && value <= 1, field, value,
             zero ? "must be in [0, 1]" : "must be in (0, 1]");
   };
-  require(population >= 4, "population", population, "must be at least 4");
-  require(max_evaluations > 0, "max_evaluations", max_evaluations, "must be positive");
+  require_count(population, "population", 4, 1'000'000);
+  require_count(max_evaluations, "max_evaluations");
   require(!std::isnan(target), "target", target, "must be a number");
   require(best_sites >= 1 && best_sites <= population, "best_sites", best_sites, "must be from 1 to the population");
   require(elite_sites >= 0 && elite_sites <= best_sites, "elite_sites", elite_sites, "must be from 0 to best_sites");
-  require(elite_recruits > 0, "elite_recruits", elite_recruits, "must be positive");
-  require(recruits > 0, "recruits", recruits, "must be positive");
+  require_count(elite_recruits, "elite_recruits", 1, 1'000'000);
+  require_count(recruits, "recruits", 1, 1'000'000);
   const int local = elite_sites * elite_recruits + (best_sites - elite_sites) * recruits;
   require(local <= population, "population", population,
           "must be at least the recruits of all sites together, " + std::to_string(local));
-  require(stagnation_limit > 0, "stagnation_limit", stagnation_limit, "must be positive");
+  require_count(stagnation_limit, "stagnation_limit");
   share(neighbourhood, "neighbourhood", false);
   share(shrinking, "shrinking", false);
   share(mutation_rate, "mutation_rate", true);

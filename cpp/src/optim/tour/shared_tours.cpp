@@ -263,7 +263,7 @@ class Sharing {
 }  // namespace
 
 SharedTours share_stops(const Eigen::MatrixXd& drive_times, const std::vector<double>& stop_times, int robots) {
-  require(robots > 0, "robots", robots, "must be > 0");
+  require_count(robots, "robots", 1, 1000);
   const auto size = static_cast<Eigen::Index>(stop_times.size()) + 2 * robots;
   require(drive_times.rows() == size && drive_times.cols() == size, "drive_times",
           std::to_string(drive_times.rows()) + " x " + std::to_string(drive_times.cols()),

@@ -4,6 +4,7 @@
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/robot/detail/whole_turns.hpp"
 #include "mmgrasp/robot/ik_branches.hpp"
 #include "plan/motion/beyond_limits.hpp"
@@ -153,7 +154,7 @@ class BranchSearch {
 
 void CartesianOptions::check() const {
   line.check();
-  require(max_branches > 0, "max_branches", max_branches, "must be > 0");
+  require_count(max_branches, "max_branches", 1, 1'000'000);
 }
 
 CartesianResult plan_cartesian(CollisionChecker& checker, const Poses& T_world_tip,

@@ -118,16 +118,16 @@ void ManipulationProblem::check() const {
 }
 
 void PrmStarMgOptions::check() const {
-  require(batch >= 0, "batch", batch, "must be >= 0");
+  require_count(batch, "batch", 0, 10'000'000);
   require(max_vertices >= 0 && max_vertices <= 10'000'000, "max_vertices", max_vertices, "must be in [0, 10000000]");
-  require(refinements >= 0, "refinements", refinements, "must be >= 0");
+  require_count(refinements, "refinements", 0, 1000);
   roadmap.check();
 }
 
 void ManipulationOptions::check() const {
   detail::manipulation_planner(planner);
-  require(ik_solutions > 0, "ik_solutions", ik_solutions, "must be > 0");
-  require(first_grasps >= 0, "first_grasps", first_grasps, "must be >= 0");
+  require_count(ik_solutions, "ik_solutions", 1, 1'000'000);
+  require_count(first_grasps, "first_grasps", 0, 1'000'000);
   require(time_limit > 0, "time_limit", time_limit, "must be > 0 [s]");
   require_not_negative(max_length, "max_length");
   require(max_length == 0 || !(rrt.goal_cost > 0), "goal_cost", rrt.goal_cost, "must be left out with max_length");

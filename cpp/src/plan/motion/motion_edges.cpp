@@ -46,10 +46,9 @@ double MotionEdges::tilt(const Eigen::VectorXd& q) const {
 
 bool MotionEdges::edge_keeps_cone(const Eigen::VectorXd& a, const Eigen::VectorXd& b, double resolution) const {
   const Eigen::VectorXd delta = b - a;
-  const int pieces =
-      std::max(1, static_cast<int>(std::ceil(delta.lpNorm<Eigen::Infinity>() / step(delta, resolution))));
-  for (int i = 0; i <= pieces; ++i) {
-    if (tilt(a + (static_cast<double>(i) / pieces) * delta) > cone_->half_angle) return false;
+  const double pieces = std::max(1.0, std::ceil(delta.lpNorm<Eigen::Infinity>() / step(delta, resolution)));
+  for (double i = 0; i <= pieces; ++i) {  // a whole number: there may be more than an int counts
+    if (tilt(a + (i / pieces) * delta) > cone_->half_angle) return false;
   }
   return true;
 }

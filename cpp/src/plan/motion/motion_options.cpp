@@ -25,16 +25,16 @@ void ToolRegion::check(const std::string& field) const {
 
 void MotionOptions::check() const {
   require(time_limit > 0, "time_limit", time_limit, "must be > 0");
-  require(max_iterations > 0, "max_iterations", max_iterations, "must be > 0");
+  require_count(max_iterations, "max_iterations");
   require_not_negative(range, "range");
-  require_positive(joint_step, "joint_step");
+  require_within(joint_step, 1e-9, kLargestLength, "joint_step", "rad or m");
   require(workspace_step > 0, "workspace_step", workspace_step, "must be > 0 [m]");
   require_positive(base_margin, "base_margin");
   require(near_end_probability >= 0 && near_end_probability < 1, "near_end_probability", near_end_probability,
           "must be in [0, 1)");
-  require(shorten_iterations >= 0, "shorten_iterations", shorten_iterations, "must be >= 0");
-  require(ik_solutions > 0, "ik_solutions", ik_solutions, "must be > 0");
-  require(region_samples > 0, "region_samples", region_samples, "must be > 0");
+  require_count(shorten_iterations, "shorten_iterations", 0);
+  require_count(ik_solutions, "ik_solutions", 1, 1'000'000);
+  require_count(region_samples, "region_samples", 1, 1'000'000);
   if (orientation_constraint) orientation_constraint->check();
 }
 

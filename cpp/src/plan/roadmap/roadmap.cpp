@@ -24,7 +24,7 @@ constexpr double kConnectedShare = 0.99;  // Share of all vertices in the larges
 void RoadmapOptions::check() const {
   require(vertices >= 2 && vertices <= 10'000'000, "vertices", vertices, "must be in [2, 10000000]");
   require_not_negative(gamma, "gamma");
-  require(neighbours >= 0, "neighbours", neighbours, "must be >= 0");
+  require_count(neighbours, "neighbours", 0, 1'000'000);
 }
 
 bool Roadmap::Data::draw(detail::CancelCheck& cancel) {

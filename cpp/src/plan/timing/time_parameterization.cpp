@@ -224,7 +224,7 @@ JointTrajectory free_trajectory(CollisionChecker& checker, const TimedPath& time
 
 void TimingOptions::check() const {
   require_not_negative(max_deviation, "max_deviation");
-  require_positive(sample_period, "sample_period");
+  require_within(sample_period, 1e-9, kLargestNumber, "sample_period", "s");
   if (jerk_limits.size() > 0) check_limits(jerk_limits, jerk_limits.size(), "jerk_limits");
 }
 
@@ -255,7 +255,7 @@ JointTrajectory time_parameterize_free(CollisionChecker& checker, const JointPat
                                        double joint_step, const Monitor& monitor) {
   options.check();
   check_path(path);
-  require_positive(joint_step, "joint_step");
+  require_within(joint_step, 1e-9, kLargestLength, "joint_step", "rad or m");
   const JointGroup& group = checker.group();
   group.check_configuration(path.waypoints.front(), "path.waypoints[0]");
   check_limits(group.velocity_limits(), group.size(), "velocity_limits");

@@ -40,8 +40,8 @@ void CapabilityOptions::check() const {
   require_numbers(approach, "approach");
   require(approach.norm() > 1e-9, "approach", approach.norm(), "must not be zero");
   require(samples >= 0 && samples <= 10000, "samples", samples, "must be in [0, 10000]");
-  require(sweeps >= 0, "sweeps", sweeps, "must not be negative");
-  require(restarts >= 0, "restarts", restarts, "must not be negative");
+  require_count(sweeps, "sweeps", 0, 255);
+  require_count(restarts, "restarts", 0);
   require_not_negative(padding, "padding", "m");
   resolve_threads(threads);  // says what is wrong
 }

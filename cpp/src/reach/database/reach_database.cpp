@@ -52,10 +52,10 @@ StoredPose::StoredPose(const Pose& T, const CellIndex& cell, double edge) : unus
 }  // namespace detail
 
 void ReachOptions::check() const {
-  require(samples > 0, "samples", static_cast<double>(samples), "must be positive");
+  require_count(samples, "samples");
   require_positive(position_cell, "position_cell", "m");
   require(rotation_cell > 0.05 && rotation_cell <= 3, "rotation_cell", rotation_cell, "must lie in (0.05, 3] [rad]");
-  require(max_per_cell > 0, "max_per_cell", max_per_cell, "must be positive");
+  require_count(max_per_cell, "max_per_cell", 1, 1'000'000);
   require(min_manipulability >= 0 && min_manipulability < 1, "min_manipulability", min_manipulability,
           "must lie in [0, 1)");
   require(thinning >= 0 && thinning <= 1, "thinning", thinning, "must lie in [0, 1]");

@@ -317,11 +317,11 @@ class PlacementSearch {
 }  // namespace
 
 void BasePlacementOptions::check() const {
-  require_positive(step, "step", "m");
+  require_length(step, "step");
   require(headings > 0 && headings <= 3600, "headings", headings, "must lie in [1, 3600]");
   require_within(candidates, 1, 1e6, "candidates", "base poses");
   require_within(seeds, 1, 1e6, "seeds", "stored configurations");
-  require(refinements >= 0, "refinements", refinements, "must be >= 0");
+  require_count(refinements, "refinements", 0, 1000);
   resolve_threads(threads);  // says what is wrong
   ik.check();
 }
@@ -329,7 +329,7 @@ void BasePlacementOptions::check() const {
 std::vector<BaseReach> base_poses_for(const ReachDatabase& database, const JointGroup& arm, const Pose& T_world_tip,
                                       int count, const BasePlacementOptions& options, const CollisionChecker* checker,
                                       const Monitor& monitor) {
-  require(count > 0, "count", count, "must be positive");
+  require_count(count, "count", 1, 1'000'000);
   const Poses targets{T_world_tip};
   return PlacementSearch(database, arm, targets, options, checker, monitor).all_for(T_world_tip, count);
 }

@@ -168,15 +168,15 @@ bool confirm(const JointGroup& group, const Pose& T_world_tip, const Eigen::Vect
 void IkOptions::check() const {
   require_positive(position_tolerance, "ik.position_tolerance", "m");
   require_positive(rotation_tolerance, "ik.rotation_tolerance", "rad");
-  require_positive(max_iterations, "ik.max_iterations", "", detail::kInfinity);
-  require_not_negative(restarts, "ik.restarts", "", detail::kInfinity);
+  require_count(max_iterations, "ik.max_iterations");
+  require_count(restarts, "ik.restarts", 0);
   require_positive(time_limit, "ik.time_limit", "s", detail::kInfinity);
   for (std::size_t i = 0; i < joint_weights.size(); ++i)
     if (!(joint_weights[i] > 0 && joint_weights[i] <= kLargestNumber))
       require_positive(joint_weights[i], "ik.joint_weights[" + std::to_string(i) + "]", "", kLargestNumber);
   for (std::size_t i = 0; i < objectives.size(); ++i)
     if (!objectives[i]) throw InvalidInput("ik.objectives[" + std::to_string(i) + "]: must not be empty");
-  require_not_negative(objective_iterations, "ik.objective_iterations", "", detail::kInfinity);
+  require_count(objective_iterations, "ik.objective_iterations", 0);
 }
 
 IkResult solve_ik(const JointGroup& group, const Pose& T_world_tip, const Eigen::VectorXd& seed,

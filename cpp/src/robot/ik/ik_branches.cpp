@@ -5,6 +5,7 @@
 
 #include "mmgrasp/core/detail/stopwatch.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/robot/detail/ik_candidates.hpp"
 #include "mmgrasp/robot/detail/ik_failure.hpp"
 #include "mmgrasp/robot/detail/ik_starts.hpp"
@@ -99,7 +100,7 @@ IkBranches branches_of(const JointGroup& group, const Pose& T_world_tip, int cou
 IkBranches solve_ik_branches(const JointGroup& group, const Pose& T_world_tip, const IkOptions& options,
                              const ConfigurationFilter& valid, int redundant_values, const Monitor& monitor,
                              bool all_turns) {
-  require(redundant_values >= 0, "redundant_values", redundant_values, "must not be negative");
+  require_count(redundant_values, "redundant_values", 0, 10'000);
   constexpr int kSearched = 16;
   IkBranches branches = branches_of(group, T_world_tip, kSearched,
                                     redundant_values ? redundant_values : kRedundantValues, options, valid, monitor);
@@ -109,7 +110,7 @@ IkBranches solve_ik_branches(const JointGroup& group, const Pose& T_world_tip, c
 
 std::vector<Eigen::VectorXd> solve_ik_all(const JointGroup& group, const Pose& T_world_tip, int count,
                                           const IkOptions& options, const ConfigurationFilter& valid, bool all_turns) {
-  require(count >= 0, "count", count, "must not be negative");
+  require_count(count, "count", 0, 1'000'000);
   const int values = std::clamp(count, 8, 48);
   std::vector<Eigen::VectorXd> solutions = branches_of(group, T_world_tip, count, values, options, valid, {}).solutions;
   if (static_cast<int>(solutions.size()) > count) solutions.resize(count);

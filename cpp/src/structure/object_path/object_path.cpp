@@ -83,9 +83,9 @@ void ObjectPathOptions::check() const {
   positive(edge_step, "edge_step");
   weight(gravity, "gravity");
   weight(max_sag, "max_sag");
-  require(redundant_values >= 0, "redundant_values", redundant_values, "must not be negative");
+  require_count(redundant_values, "redundant_values", 0, 10'000);
   positive(base_spacing, "base_spacing");
-  require(base_headings > 0, "base_headings", base_headings, "must be positive");
+  require_count(base_headings, "base_headings", 1, 3600);
 }
 
 struct ObjectPathEvaluator::Impl {

@@ -6,6 +6,7 @@
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/detail/stopwatch.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/core/parallel.hpp"
 #include "structure/bound/ik_enclosure.hpp"
 #include "structure/object_path/branch_and_bound.hpp"
@@ -47,9 +48,9 @@ void GraspSearchOptions::check() const {
   require(std::find(names.begin(), names.end(), algorithm) != names.end(), "algorithm", algorithm,
           "must be one of " + known);
   require(max_gap > 0 && max_gap < 1, "max_gap", max_gap, "must be in (0, 1)");
-  require(max_boxes > 0, "max_boxes", max_boxes, "must be positive");
+  require_count(max_boxes, "max_boxes");
   require(time_limit > 0, "time_limit", time_limit, "must be positive [s]");
-  require(front_searches >= 0, "front_searches", front_searches, "must not be negative");
+  require_count(front_searches, "front_searches", 0, 1'000'000);
   resolve_threads(threads);  // says what is wrong
   population.check();
   grasp.check();

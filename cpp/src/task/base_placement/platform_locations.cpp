@@ -162,8 +162,8 @@ void check_point(const Eigen::Vector3d& point, const std::string& field) {
 }  // namespace
 
 void PlatformLocationsOptions::check() const {
-  require(samples > 0, "platform_locations.samples", samples, "must be positive");
-  require(max_draws > 0, "platform_locations.max_draws", max_draws, "must be positive");
+  require_count(samples, "platform_locations.samples", 1, 1'000'000);
+  require_count(max_draws, "platform_locations.max_draws");
   require_not_negative(least_manipulability, "platform_locations.least_manipulability");
   require_not_negative(turn_weight, "platform_locations.turn_weight");
   require(time_limit > 0, "platform_locations.time_limit", time_limit, "must be positive");

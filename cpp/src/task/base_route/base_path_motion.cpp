@@ -11,6 +11,8 @@
 namespace mmgrasp {
 namespace {
 
+constexpr double kMostSamples = 1e7;  // Of one drive.
+
 /// The share of a straight piece that is driven, from 0 to 1: as fast as both way and turn allow.
 class Profile {
  public:
@@ -55,6 +57,8 @@ RobotMotion base_path_motion(const BasePath& path, BaseKind base, const BaseLimi
   require(q.size() == static_cast<Eigen::Index>(joints.size()), "q", static_cast<double>(q.size()),
           "must hold one value per joint");
   const BaseLimits limits = driving_limits(base, base_limits);
+  require(base_path_duration(path, base, base_limits) / period <= kMostSamples, "period", period,
+          "must leave at most 1e7 samples of the drive [s]");
   RobotMotion motion;
   motion.joints = joints;
   const auto add = [&](double time, const Eigen::Vector3d& pose, const Eigen::Vector3d& velocity) {

@@ -316,6 +316,7 @@ Intersections maximal_intersections(const RegionPatches& patches, double min_rad
 Intersections maximal_intersections(const BaseGrid& grid, const std::vector<BaseRegion>& regions, double min_radius,
                                     std::size_t max_boxes, const Monitor& monitor) {
   require_not_negative(min_radius, "min_radius");
+  require_count(static_cast<std::int64_t>(max_boxes), "max_boxes");
   return detail::maximal_intersections(detail::RegionPatches(grid, regions), min_radius, max_boxes, monitor);
 }
 

@@ -226,7 +226,7 @@ class GroupOrder {
 }  // namespace
 
 void OrderOptions::check() const {
-  require(restarts >= 0, "restarts", restarts, "must be 0 or more");
+  require_count(restarts, "restarts", 0);
 }
 
 PickingOrder paired_order(const std::vector<std::vector<Eigen::Vector2d>>& places) {

@@ -207,11 +207,11 @@ class DriveBy {
 
 void DriveByOptions::check() const {
   require_within(waypoints, 2, 1000, "waypoints", "");
-  require(seeds > 0, "seeds", seeds, "must be positive");
-  require(solutions > 0, "solutions", solutions, "must be positive");
-  require(grasp_assignments > 0, "grasp_assignments", grasp_assignments, "must be positive");
+  require_count(seeds, "seeds", 1, 1'000'000);
+  require_count(solutions, "solutions", 1, 1'000'000);
+  require_count(grasp_assignments, "grasp_assignments", 1, 1'000'000);
   require_within(goal_configurations, 1, 1e4, "goal_configurations", "");
-  require(iterations > 0, "iterations", iterations, "must be positive");
+  require_count(iterations, "iterations");
   require(time_limit > 0, "time_limit", time_limit, "must be positive");
   require_not_negative(jerk_time, "jerk_time");
   resolve_threads(threads);  // says what is wrong

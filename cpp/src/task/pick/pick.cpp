@@ -34,7 +34,7 @@ void PickOptions::check() const {
   require_positive(approach_distance, "approach_distance");
   require_positive(lift_height, "lift_height");
   require_positive(motion_time_limit, "motion_time_limit");
-  require(ik_seeds > 0, "ik_seeds", ik_seeds, "must be positive");
+  require_count(ik_seeds, "ik_seeds", 1, 1'000'000);
 }
 
 void PickProblem::check() const {

@@ -11,6 +11,7 @@ namespace {
 
 using namespace detail;
 
+constexpr double kMaxPieces = 1e9;    // Those of an edge are counted by an int.
 constexpr double kLimitSlack = 1e-5;  // What limits and values printed to five digits lose.
 
 int known_joint(const RobotModel& robot, const std::string& name) {
@@ -45,7 +46,9 @@ class PathWalk {
 
  private:
   bool walk(const Eigen::VectorXd& from, const Eigen::VectorXd& to, std::size_t edge) {
-    const int count = std::max(1, static_cast<int>(std::ceil((to - from).cwiseAbs().maxCoeff() / step_)));
+    const double pieces = std::ceil((to - from).cwiseAbs().maxCoeff() / step_);
+    require(pieces <= kMaxPieces, "joint_step", step_, "must not cut an edge into more than 1e9 pieces");
+    const int count = std::max(1, static_cast<int>(pieces));
     for (int i = 1; i <= count; ++i) {
       const double at = static_cast<double>(i) / count;
       if (!is_good(from + at * (to - from), edge, at)) return false;
@@ -82,7 +85,7 @@ class PathWalk {
 }  // namespace
 
 PathCheckResult check_path(const PathToCheck& path, double joint_step, const Monitor& monitor) {
-  require(joint_step > 0 && joint_step <= 1e6, "joint_step", joint_step, "must be positive, at most 1e6 [rad or m]");
+  require(joint_step >= kLeastStep && joint_step <= 1e6, "joint_step", joint_step, "must be in [1e-9, 1e6] [rad or m]");
   require(!path.waypoints.empty(), "waypoints", "[]", "must hold at least one configuration");
   const auto robot = std::make_shared<const RobotModel>(read_robot(path.robot));
   const ArmSetup setup = setup_of(path, *robot);

@@ -73,6 +73,40 @@ bool has_no_area(const std::vector<Eigen::Vector3d>& v, const std::array<int, 3>
   return a.cross(b).norm() <= 1e-14 * longest;
 }
 
+/// The triangles without those that have the corners of an earlier one, turned either way.
+Triangles without_repeats(const Triangles& triangles) {
+  std::vector<std::pair<std::array<int, 3>, std::size_t>> corners;
+  corners.reserve(triangles.size());
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    std::array<int, 3> sorted = triangles[i];
+    std::sort(sorted.begin(), sorted.end());
+    corners.emplace_back(sorted, i);
+  }
+  InterruptionPoll poll;
+  std::sort(corners.begin(), corners.end(), [&](const auto& a, const auto& b) {
+    poll();
+    return a < b;
+  });
+  std::vector<char> repeated(triangles.size(), 0);
+  for (std::size_t i = 1; i < corners.size(); ++i)
+    repeated[corners[i].second] = corners[i].first == corners[i - 1].first;
+  Triangles kept;
+  for (std::size_t i = 0; i < triangles.size(); ++i)
+    if (!repeated[i]) kept.push_back(triangles[i]);
+  return kept;
+}
+
+/// Whether the triangles bound a solid once each is there only once; then they are what is left, and oriented.
+bool close_without_repeats(const std::vector<Eigen::Vector3d>& vertices, Triangles& triangles) {
+  TriangleMesh once;
+  once.triangles = without_repeats(triangles);
+  if (once.triangles.size() == triangles.size() || !orient_closed(vertices, once.triangles)) return false;
+  once.vertices = vertices;
+  if (!(mesh_volume(once) > 0)) return false;
+  triangles = std::move(once.triangles);
+  return true;
+}
+
 }  // namespace
 
 std::shared_ptr<const TriangleMesh> clean_mesh(RawMesh raw, const std::string& source, MeshReport* report) {
@@ -90,7 +124,9 @@ std::shared_ptr<const TriangleMesh> clean_mesh(RawMesh raw, const std::string& s
   triangles.erase(std::remove_if(triangles.begin(), triangles.end(), has_equal_corners), triangles.end());
   // Slivers without area may be what closes the mesh over a T-shaped seam, so they go only after the question is
   // answered.
-  mesh->closed = orient_closed(mesh->vertices, triangles);
+  // A file may hold each face twice, from either side. Faces that two solids share are no repeats: both stay where one
+  // of them would leave the solids open.
+  mesh->closed = close_without_repeats(mesh->vertices, triangles) || orient_closed(mesh->vertices, triangles);
   triangles.erase(
       std::remove_if(triangles.begin(), triangles.end(), [&](const auto& t) { return has_no_area(mesh->vertices, t); }),
       triangles.end());

@@ -262,6 +262,49 @@ TEST(Mesh, CleaningMergesDropsAndOrients) {
   EXPECT_THROW(make_mesh({{0, 0, 0}, {1, 0, 0}, {0, std::nan(""), 0}}, {{0, 1, 2}}), InvalidInput);
 }
 
+TEST(Mesh, TrianglesStoredTwiceLeaveASolidSolid) {
+  const std::shared_ptr<const TriangleMesh> solids[] = {shape_mesh(Box{{1, 2, 3}}), shape_mesh(Sphere{0.5}, 24)};
+  Rng rng(3);
+  for (const auto& solid : solids) {
+    for (const double share : {0.01, 0.3, 1.0}) {
+      for (const bool turned : {false, true}) {
+        auto triangles = solid->triangles;
+        for (const auto& t : solid->triangles) {
+          if (rng.uniform() > share && triangles.size() > solid->triangles.size()) continue;  // one repeat at least
+          triangles.push_back(turned ? std::array<int, 3>{t[1], t[0], t[2]} : std::array<int, 3>{t[1], t[2], t[0]});
+        }
+        const auto mesh = make_mesh(solid->vertices, triangles);
+        EXPECT_TRUE(mesh->closed && mesh->convex) << share << turned;
+        EXPECT_EQ(mesh->triangles.size(), solid->triangles.size());
+        EXPECT_NEAR(mesh_volume(*mesh), mesh_volume(*solid), 1e-12);
+        EXPECT_TRUE(mesh_contains(*mesh, {0.1, 0.05, 0.02}));
+
+        triangles.erase(triangles.begin());  // a hole, or only one of two
+        const auto less = make_mesh(solid->vertices, triangles);
+        EXPECT_EQ(less->closed, share == 1.0);
+      }
+    }
+  }
+}
+
+TEST(Mesh, FacesThatSolidsShareAreNoRepeats) {
+  // Two boxes side by side: the face between them is there twice, turned against itself.
+  const auto box = shape_mesh(Box{{1, 2, 3}});
+  auto vertices = box->vertices;
+  auto triangles = box->triangles;
+  for (const Eigen::Vector3d& v : box->vertices) vertices.push_back(Eigen::Vector3d(-v.x() + 1, v.y(), v.z()));
+  for (const auto& t : box->triangles) triangles.push_back({t[1] + 8, t[0] + 8, t[2] + 8});
+  const auto both = make_mesh(vertices, triangles);
+  EXPECT_TRUE(both->closed);
+  EXPECT_NEAR(mesh_volume(*both), 12, 1e-12);
+  EXPECT_TRUE(mesh_contains(*both, {0.1, 0.05, 0.02}) && mesh_contains(*both, {0.9, 0.05, 0.02}));
+
+  // A sheet that is stored from both sides stays one.
+  const auto sheet = make_mesh({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}},
+                               {{0, 1, 2}, {0, 2, 3}, {0, 2, 1}, {0, 3, 2}});
+  EXPECT_FALSE(sheet->closed);
+}
+
 TEST(Mesh, CavitiesAndSeparateSolids) {
   const auto hollow = shells({{Box{{2, 2, 2}}, false}, {Box{{1, 1, 1}}, true}});
   EXPECT_TRUE(hollow->closed);

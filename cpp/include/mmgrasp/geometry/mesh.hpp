@@ -30,7 +30,7 @@ struct MMGRASP_EXPORT MeshReport {
   std::string path;
   int vertices_read = 0;
   int vertices_merged = 0;       ///< Removed because they coincide with another one.
-  int degenerate_triangles = 0;  ///< Removed: two equal corners or zero area.
+  int degenerate_triangles = 0;  ///< Removed: two equal corners, zero area, or stored twice.
   int triangles = 0;             ///< Kept.
   bool closed = false;
   bool convex = false;

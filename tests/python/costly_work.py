@@ -16,7 +16,7 @@ from argument_objects import ARM, BOX, POSE, Q
 from mmgrasp import _core
 
 CALL = Callable[[], Any]
-HUGE = 2**31 - 1
+HUGE = 2_000_000_000  # the most that is counted
 
 rng = np.random.default_rng(1)
 

@@ -171,7 +171,9 @@ COSTLY: dict[str, Callable[[], CALL]] = {
         lambda: mg.Hand.from_robot(ao.seven_joint_hand(), "tcp", approach=[0, 0, 1], closing=[1, 0, 0], postures=10**6)
     ),
     "JointTrajectory.to_csv": of(trajectory, lambda t: t.to_csv()),
-    "Pipe.sample_grasps": lambda: lambda: ao.pipe().sample_grasps(50_000, draws=1000),
+    "Pipe.sample_grasps": lambda: lambda: ao.pipe().sample_grasps(
+        1_000_000, draws=1_000_000, length_spacing=1e-6, angle_spacing=1e-3
+    ),
     "SupportedFrame": supported,
     "ObjectPathEvaluator.evaluate": evaluated,
     "follow_object_path": followed,

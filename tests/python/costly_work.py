@@ -119,7 +119,7 @@ def assignment() -> CALL:
 
 
 def weights() -> CALL:
-    given = np.ones((1500, 1500))
+    given = np.ones((6000, 6000))
     return lambda: _core.pairwise_weights(given)
 
 
@@ -274,7 +274,7 @@ def supported() -> CALL:
     return lambda: [mg.grasping.SupportedFrame(given, mg.grasping.BeamSupport(0, 0.0)) for _ in range(50)]
 
 
-def trajectory(samples: int = 300_000) -> mg.planning.JointTrajectory:
+def trajectory(samples: int = 2_000_000) -> mg.planning.JointTrajectory:
     return mg.planning.JointTrajectory(["i", "j", "k"], np.arange(samples) * 0.01, rng.random((samples, 3)))
 
 

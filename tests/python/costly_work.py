@@ -118,11 +118,6 @@ def assignment() -> CALL:
     return lambda: _core.cheapest_assignment(costs)
 
 
-def weights() -> CALL:
-    given = np.ones((6000, 6000))
-    return lambda: _core.pairwise_weights(given)
-
-
 def set_cover() -> CALL:
     sets = [[i % 300, *np.random.default_rng(i).integers(0, 300, 11).tolist()] for i in range(900)]
     return lambda: _core.solve_set_cover(300, sets, time_limit=1000)
@@ -189,8 +184,8 @@ def rays() -> CALL:
 
 def rendered() -> CALL:
     camera = mg.mapping.PinholeCamera(width=4000, height=4000, fx=2000.0, fy=2000.0, cx=2000.0, cy=2000.0)
-    scene = [mg.LinkShape(slab(100))]
-    return lambda: mg.mapping.render_depth(scene, camera, mg.pose([0.05, 0.05, -0.3]), threads=1)
+    scene = [mg.LinkShape(on_sphere(3000))]
+    return lambda: mg.mapping.render_depth(scene, camera, np.eye(4), threads=1)
 
 
 def height_map(side: int = 1500) -> mg.mapping.HeightMap:
@@ -304,13 +299,28 @@ def placed_base() -> CALL:
 
 def base_regions() -> CALL:
     problem, found = ao.part_supply_problem(), database()
-    grid = mg.base.BaseGrid([-2.0, -2.0], 0.004, 1000, 1000)
+    grid = mg.base.BaseGrid([-2.0, -2.0], 0.001, 4000, 4000)
     return lambda: mg.base.compute_base_regions(problem, found, grid)
+
+
+def sliding_box() -> tuple[mg.CollisionChecker, np.ndarray, np.ndarray]:
+    """A box that slides 1e-7 m above a floor: what is proven of the edge at once is as short as that."""
+    robot = mg.Robot.from_strings(
+        """<robot name="r"><link name="o"/><link name="a"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
+<joint name="i" type="prismatic"><parent link="o"/><child link="a"/><axis xyz="1 0 0"/><limit lower="0" upper="1" velocity="1"/></joint></robot>"""
+    )
+    world = mg.World()
+    world.add_box("floor", [3, 3, 0.1], mg.pose([0, 0, -0.1 - 1e-7]))
+    return mg.CollisionChecker(robot, world, robot.group(base_link="o", tip="a")), np.zeros(1), np.ones(1)
+
+
+def field() -> mg.collision.GridDistanceField:
+    return mg.collision.GridDistanceField(rng.uniform(-0.02, 0.02, (250, 250, 250)), [0.0, 0.0, 0.0], 0.004)
 
 
 def object_regions() -> CALL:
     problem, found = ao.part_supply_problem(), database()
-    grid = mg.base.BaseGrid([-2.0, -2.0], 0.004, 1000, 1000)
+    grid = mg.base.BaseGrid([-2.0, -2.0], 0.001, 4000, 4000)
     return lambda: mg.base.ObjectRegions.compute(problem, found, grid)
 
 
@@ -327,13 +337,12 @@ def far_route() -> CALL:
 
 
 def blind_motion() -> CALL:
+    """The square post cannot turn between the walls beside it, so no motion leads from one quarter turn to the next."""
     world = mg.World()
-    world.add_box("block", [0.2, 0.2, 0.2], mg.pose([*POSE[:3, 3]]))
-    goal = np.array([2.9, 1.9, 0.9])
-    checker = mg.CollisionChecker(ao.ROBOT, mg.World(), ARM)
-    region = _core.ToolRegion(mg.pose([50, 0, 0]))
-    del world, goal
-    return lambda: mg.plan_motion(checker, start=Q, regions=[region], time_limit=1000)
+    for side in (-1, 1):
+        world.add_box(f"wall {side}", [0.01, 0.4, 0.6], mg.pose([side * 0.062, 0, 0]))
+    checker = mg.CollisionChecker(ao.ROBOT, world, ARM)
+    return lambda: mg.plan_motion(checker, [0, 0.5, 0.5], [[np.pi / 2, 0.5, 0.5]], time_limit=1000)
 
 
 def derivative_free() -> CALL:
@@ -341,7 +350,7 @@ def derivative_free() -> CALL:
         return float(np.sum(np.sin(100 * x) ** 2 + x**2))
 
     return lambda: mg.optim.minimize_derivative_free(
-        slow, np.full(2, 0.5), np.full(2, -1), np.ones(2), max_evaluations=10**8, tolerance=1e-300
+        slow, np.full(40, 0.5), np.full(40, -1), np.ones(40), max_evaluations=10**8, tolerance=1e-300
     )
 
 
@@ -405,9 +414,9 @@ CLOUD = lw.table_scan
 DRIVEN: dict[str, Callable[[mg.planning.DriveByResult], Any]] = {
     "DriveByResult.to_csv": lambda d: d.to_csv(between=20_000),
     "WholeBodyTrajectory.sampled": lambda d: d.trajectory.sampled(between=50_000),
-    "WholeBodyTrajectory.rolled_out": lambda d: d.trajectory.rolled_out(1_000_000),
+    "WholeBodyTrajectory.rolled_out": lambda d: d.trajectory.rolled_out(1_000_000 // len(d.trajectory.times)),
     "WholeBodyTrajectory.to_csv": lambda d: d.trajectory.to_csv(between=20_000),
-    "RobotMotion.of_drive_by": lambda d: mg.planning.RobotMotion.of_drive_by(d, period=1e-4),
+    "RobotMotion.of_drive_by": lambda d: repeated(20, lambda: mg.planning.RobotMotion.of_drive_by(d, period=1e-4))(),
 }
 
 

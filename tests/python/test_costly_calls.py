@@ -39,7 +39,7 @@ CHEAP = {
         Hand.opening_at Hand.posture_values Hand.pregrasp_opening Hand.share_open LineGrasp.probability LineGrasp.success
         PinholeCamera.project Pipe.grasp centric_grasps closing_outcome drive_arc flat_contact grasp_holding joint_velocity
         line_contact platform_velocity pose_to_xyz_quat pose_to_xyz_rpy push_grasp push_speed_limit quat_xyzw_from_rotation
-        soft_finger_torque wheel_speeds make_base_grid
+        soft_finger_torque wheel_speeds make_base_grid pairwise_weights
         """,
     "one configuration, one pose, one time, one place or one body": """
         verify.width_unlike_opening verify.broken_seal seal_gap _centre_of_mass

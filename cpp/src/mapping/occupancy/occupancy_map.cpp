@@ -177,6 +177,7 @@ OccupancyReport OccupancyMap::integrate(const DepthImage& image, const DepthCame
   double farthest = eye.cwiseAbs().maxCoeff();
   octomap::Pointcloud ends;
   for (int v = 0; v < frame.camera.height; ++v) {
+    detail::throw_if_interrupted();
     for (int u = 0; u < frame.camera.width; ++u) {
       const float z = frame.at(u, v);
       if (!(z > 0)) continue;

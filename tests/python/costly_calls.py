@@ -44,11 +44,9 @@ from costly_work import (
     depth_segments,
     derivative_free,
     evaluated,
-    exact_sharing,
     exact_stops,
     far_route,
     fine_occupancy,
-    field,
     fine_sdf,
     folder,
     followed,
@@ -127,7 +125,6 @@ COSTLY: dict[str, Callable[[], CALL]] = {
     "World.add_mesh": scene_file,
     "World.add_octree": octree_file,
     "World.add_points": of(lambda: CLOUD(5_000_000), lambda p: mg.World().add_points("p", p, 0.0005)),
-    "World.add_field": of(field, lambda f: repeated(20, lambda: mg.World().add_field("f", f, resolution=0.004))()),
     "World.add_sdf": of(fine_sdf, lambda s: repeated(50, lambda: mg.World().add_sdf("s", s))()),
     "World.add_occupancy": of(fine_occupancy, lambda o: repeated(5000, lambda: mg.World().add_occupancy("o", o))()),
     "Voxels": of(lambda: CLOUD(20_000_000), lambda p: _core.Voxels(p, 0.0005)),
@@ -168,12 +165,6 @@ COSTLY: dict[str, Callable[[], CALL]] = {
     "OccupancyMap.integrate": lambda: integrated(lambda: mg.mapping.OccupancyMap(resolution=0.01)),
     "OccupancyMap.query": of(points, ao.occupancy_map().query),
     "OccupancyMap.obstacle_cells": of(fine_occupancy, lambda o: [o.obstacle_cells() for _ in range(10_000)]),
-    "Hand.from_robot": of(
-        ao.seven_joint_hand,
-        lambda r: repeated(
-            30, lambda: mg.Hand.from_robot(r, "tcp", approach=[0, 0, 1], closing=[1, 0, 0], postures=1000)
-        )(),
-    ),
     "JointTrajectory.to_csv": of(trajectory, lambda t: t.to_csv()),
     "Pipe.sample_grasps": lambda: lambda: ao.pipe().sample_grasps(
         1_000_000, draws=1_000_000, length_spacing=1e-6, angle_spacing=1e-3
@@ -222,14 +213,13 @@ COSTLY: dict[str, Callable[[], CALL]] = {
     "segment_objects": of(lambda: CLOUD(3_000_000), lambda c: mg.mapping.segment_objects(c, leaf=0.001, patch=0.01)),
     "shape_diameters": lambda: segmented(lambda m: mg.grasping.shape_diameters(m, threads=1)),
     "share_stops": shared,
-    "share_stops, few": exact_sharing,
     "shortest_visiting_tour": tour,
     "simplify_mesh": hull_mesh,
     "solve_set_cover": set_cover,
     "synthesize_grasps": synthesis,
     "time_parameterize": lambda: timed(mg.time_parameterize),
     "time_parameterize_free": lambda: (
-        lambda: mg.planning.time_parameterize_free(CHECKER(), [Q, Q / 2], joint_step=1e-12)
+        lambda: mg.planning.time_parameterize_free(CHECKER(), [Q, Q / 2], joint_step=1e-9)
     ),
     "track_base": tracked,
     "verify.check_path": checked_path,

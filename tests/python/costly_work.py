@@ -108,11 +108,6 @@ def tour() -> CALL:
     return lambda: _core.shortest_visiting_tour(lengths)
 
 
-def exact_sharing() -> CALL:
-    times = rng.uniform(1, 2, (212, 212))
-    return lambda: _core.share_stops(times, [1.0] * 12, 100)
-
-
 def assignment() -> CALL:
     costs = rng.random((4000, 4000)) + np.arange(4000) * np.arange(4000)[:, None] * 1e-6
     return lambda: _core.cheapest_assignment(costs)
@@ -314,10 +309,6 @@ def sliding_box() -> tuple[mg.CollisionChecker, np.ndarray, np.ndarray]:
     return mg.CollisionChecker(robot, world, robot.group(base_link="o", tip="a")), np.zeros(1), np.ones(1)
 
 
-def field() -> mg.collision.GridDistanceField:
-    return mg.collision.GridDistanceField(rng.uniform(-0.02, 0.02, (250, 250, 250)), [0.0, 0.0, 0.0], 0.004)
-
-
 def object_regions() -> CALL:
     problem, found = ao.part_supply_problem(), database()
     grid = mg.base.BaseGrid([-2.0, -2.0], 0.001, 4000, 4000)
@@ -342,12 +333,13 @@ def blind_motion() -> CALL:
     for side in (-1, 1):
         world.add_box(f"wall {side}", [0.01, 0.4, 0.6], mg.pose([side * 0.062, 0, 0]))
     checker = mg.CollisionChecker(ao.ROBOT, world, ARM)
-    return lambda: mg.plan_motion(checker, [0, 0.5, 0.5], [[np.pi / 2, 0.5, 0.5]], time_limit=1000)
+    return lambda: mg.plan_motion(checker, start=[0, 0.5, 0.5], goal=[np.pi / 2, 0.5, 0.5], time_limit=1000)
 
 
 def derivative_free() -> CALL:
     def slow(x: np.ndarray) -> float:
-        return float(np.sum(np.sin(100 * x) ** 2 + x**2))
+        spread = np.linalg.svd(np.sin(np.outer(x, np.arange(200))), compute_uv=False)
+        return float(np.sum(spread) + x @ x)
 
     return lambda: mg.optim.minimize_derivative_free(
         slow, np.full(40, 0.5), np.full(40, -1), np.ones(40), max_evaluations=10**8, tolerance=1e-300
@@ -414,7 +406,9 @@ CLOUD = lw.table_scan
 DRIVEN: dict[str, Callable[[mg.planning.DriveByResult], Any]] = {
     "DriveByResult.to_csv": lambda d: d.to_csv(between=20_000),
     "WholeBodyTrajectory.sampled": lambda d: d.trajectory.sampled(between=50_000),
-    "WholeBodyTrajectory.rolled_out": lambda d: d.trajectory.rolled_out(1_000_000 // len(d.trajectory.times)),
+    "WholeBodyTrajectory.rolled_out": lambda d: repeated(
+        20, lambda: d.trajectory.rolled_out(1_000_000 // len(d.trajectory.times))
+    )(),
     "WholeBodyTrajectory.to_csv": lambda d: d.trajectory.to_csv(between=20_000),
     "RobotMotion.of_drive_by": lambda d: repeated(20, lambda: mg.planning.RobotMotion.of_drive_by(d, period=1e-4))(),
 }

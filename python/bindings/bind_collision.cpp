@@ -200,20 +200,16 @@ void bind_checker(py::module_& m) {
           "Every pair of bodies nearer than `within` [m], nearest first, each with its gradient.")
       .def("are_free", &are_free_of_rows, py::arg("Q"), py::arg("threads") = 0,
            "is_free of each row of Q (m, n), as (m,) booleans; 0 threads: all.")
-      .def(
-          "check_edge", &check_edge_of,
-          py::arg("q0"), py::arg("q1"),
-          ("The straight joint-space edge with what refuses it: in steps, or by conservative advancement." +
-           option_help(edge_fields()))
-              .c_str())
+      .def("check_edge", &check_edge_of, py::arg("q0"), py::arg("q1"),
+           ("The straight joint-space edge with what refuses it: in steps, or by conservative advancement." +
+            option_help(edge_fields()))
+               .c_str())
       .def_property_readonly(
           "motion_bounds", [](const CollisionChecker& c) { return motion_bounds(c); },
           "(n,) bounds on how far any point moves when a joint moves by one unit [m/rad or m/m].")
       .def("clone", &CollisionChecker::clone, "The same checker with scratch of its own, for another thread.")
-      .def(
-          "edge_is_free", &edge_is_free_of,
-          py::arg("q0"), py::arg("q1"), py::arg("joint_step") = 0.02,
-          "The straight joint-space edge, checked so finely that no joint moves more than `joint_step` [rad or m].")
+      .def("edge_is_free", &edge_is_free_of, py::arg("q0"), py::arg("q1"), py::arg("joint_step") = 0.02,
+           "The straight joint-space edge, checked so finely that no joint moves more than `joint_step` [rad or m].")
       .def("__repr__", [](const CollisionChecker& c) {
         return "CollisionChecker('" + c.group().robot().name() + "', group '" + c.group().name() + "', " +
                std::to_string(c.world().objects().size()) + " objects)";

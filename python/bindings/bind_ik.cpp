@@ -172,9 +172,8 @@ void bind_group_methods(py::module_& m) {
             const IkOptions read = read_options(ik_fields(), options, "ik_all");
             std::optional<CollisionChecker> checker;
             const ConfigurationFilter valid = free_of(g, world, checker);
-            return rows_to_array(interruptible([&](const Monitor& monitor) {
-              return solve_ik_all(g, T, count, read, valid, all_turns, monitor);
-            }));
+            return rows_to_array(interruptible(
+                [&](const Monitor& monitor) { return solve_ik_all(g, T, count, read, valid, all_turns, monitor); }));
           },
           py::arg("T_world_tip"), py::arg("count") = 16, py::arg("world") = py::none(), py::arg("all_turns") = false,
           ("Up to `count` solutions (k, n), the first ones farthest apart; ik_branches tells why others fell. They "

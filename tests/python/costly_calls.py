@@ -166,8 +166,8 @@ COSTLY: dict[str, Callable[[], CALL]] = {
     "OccupancyMap.query": of(points, ao.occupancy_map().query),
     "OccupancyMap.obstacle_cells": of(fine_occupancy, lambda o: [o.obstacle_cells() for _ in range(10_000)]),
     "JointTrajectory.to_csv": of(trajectory, lambda t: t.to_csv()),
-    "Pipe.sample_grasps": lambda: lambda: ao.pipe().sample_grasps(
-        1_000_000, draws=1_000_000, length_spacing=1e-6, angle_spacing=1e-3
+    "Pipe.sample_grasps": lambda: (
+        lambda: ao.pipe().sample_grasps(1_000_000, draws=1_000_000, length_spacing=1e-6, angle_spacing=1e-3)
     ),
     "SupportedFrame": supported,
     "ObjectPathEvaluator.evaluate": evaluated,

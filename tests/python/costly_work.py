@@ -333,7 +333,9 @@ def blind_motion() -> CALL:
     for side in (-1, 1):
         world.add_box(f"wall {side}", [0.01, 0.4, 0.6], mg.pose([side * 0.062, 0, 0]))
     checker = mg.CollisionChecker(ao.ROBOT, world, ARM)
-    return lambda: mg.plan_motion(checker, start=[0, 0.5, 0.5], goal=[np.pi / 2, 0.5, 0.5], time_limit=1000)
+    return lambda: mg.plan_motion(
+        checker, start=[0, 0.5, 0.5], goal=[np.pi / 2, 0.5, 0.5], time_limit=1000, max_iterations=HUGE
+    )
 
 
 def derivative_free() -> CALL:

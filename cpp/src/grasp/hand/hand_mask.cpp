@@ -70,7 +70,8 @@ int MaskImage::count() const {
 }
 
 void MaskImage::check(const char* field) const {
-  require(radius >= 0 && radius <= kMostRadius, std::string(field) + ".radius", radius, "must be from 0 to 10000 cells");
+  require(radius >= 0 && radius <= kMostRadius, std::string(field) + ".radius", radius,
+          "must be from 0 to 10000 cells");
   require(cells.size() == static_cast<std::size_t>(width()) * width(), field, std::to_string(cells.size()) + " cells",
           "must be (2 radius + 1) squared");
   require(count() <= 65535, field, std::to_string(count()) + " ones", "must be at most 65535 (use coarser cells)");

@@ -10,8 +10,8 @@
 #include <sstream>
 
 #include "mapping/sdf/frame_checks.hpp"
-#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/detail/file_content.hpp"
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/geometry/octree.hpp"
@@ -103,8 +103,8 @@ class UnknownCells {
 
 namespace {
 
-/// Adds a frame as octomap's insertPointCloud() does, with one ray for each cell that holds a pixel, but piece by piece:
-/// all cells are known, and Ctrl-C was heard, before the first one changes.
+/// Adds a frame as octomap's insertPointCloud() does, with one ray for each cell that holds a pixel, but piece by
+/// piece: all cells are known, and Ctrl-C was heard, before the first one changes.
 void cast(octomap::OcTree& tree, const octomap::Pointcloud& ends, const octomap::point3d& eye, double longest) {
   constexpr std::size_t kPiece = 500;  // rays, of up to some thousand cells each
   octomap::KeySet hit, free, occupied;

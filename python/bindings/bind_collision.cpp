@@ -2,6 +2,7 @@
 #include "bindings.hpp"
 #include "given.hpp"
 #include "mmgrasp/collision/checker.hpp"
+#include "mmgrasp/collision/detail/edge_steps.hpp"
 #include "mmgrasp/collision/edge.hpp"
 #include "same_robot.hpp"
 
@@ -103,6 +104,33 @@ Eigen::VectorXd configuration(const CollisionChecker& checker, const ArrayLike& 
   return vector_argument(q, name, checker.group().size());
 }
 
+/// Edges of so many checks or more are looked at without the interpreter's lock.
+constexpr double kLongEdge = 200;
+
+/// A clone looks at a long edge, as other threads may ask the checker meanwhile.
+template <typename Work>
+auto along_edge(CollisionChecker& checker, double pieces, const Work& work) {
+  if (pieces < kLongEdge) return work(checker);
+  CollisionChecker own = checker.clone();
+  return interruptible([&] { return work(own); });
+}
+
+EdgeResult check_edge_of(CollisionChecker& c, const ArrayLike& from, const ArrayLike& to, const py::kwargs& options) {
+  const Eigen::VectorXd q0 = configuration(c, from, "q0"), q1 = configuration(c, to, "q1"), delta = q1 - q0;
+  const EdgeOptions read = read_options(edge_fields(), options, "check_edge");
+  const double step = detail::edge_step(delta, motion_bounds(c), read.joint_step, read.workspace_step);
+  const double pieces = read.continuous ? kLongEdge : detail::edge_pieces(delta.lpNorm<Eigen::Infinity>(), step);
+  return along_edge(c, pieces, [&](CollisionChecker& checker) { return check_edge(checker, q0, q1, read); });
+}
+
+bool edge_is_free_of(CollisionChecker& c, const ArrayLike& from, const ArrayLike& to, const Given<double>& given_step) {
+  const double step = taken(given_step, "joint_step");
+  if (!(step > 0)) throw InvalidInput("joint_step = " + std::to_string(step) + ": must be > 0");
+  const Eigen::VectorXd q0 = configuration(c, from, "q0"), q1 = configuration(c, to, "q1");
+  const double pieces = detail::edge_pieces((q1 - q0).lpNorm<Eigen::Infinity>(), step);
+  return along_edge(c, pieces, [&](CollisionChecker& checker) { return checker.edge_is_free(q0, q1, step); });
+}
+
 py::array_t<bool> are_free_of_rows(const CollisionChecker& c, const ArrayLike& Q, int threads) {
   const auto rows = batch_argument(Q, "Q", c.group().size());
   const CollisionChecker own = c.clone();
@@ -172,29 +200,16 @@ void bind_checker(py::module_& m) {
           "Every pair of bodies nearer than `within` [m], nearest first, each with its gradient.")
       .def("are_free", &are_free_of_rows, py::arg("Q"), py::arg("threads") = 0,
            "is_free of each row of Q (m, n), as (m,) booleans; 0 threads: all.")
-      .def(
-          "check_edge",
-          [](CollisionChecker& c, const ArrayLike& q0, const ArrayLike& q1, const py::kwargs& options) {
-            return check_edge(c, configuration(c, q0, "q0"), configuration(c, q1, "q1"),
-                              read_options(edge_fields(), options, "check_edge"));
-          },
-          py::arg("q0"), py::arg("q1"),
-          ("The straight joint-space edge with what refuses it: in steps, or by conservative advancement." +
-           option_help(edge_fields()))
-              .c_str())
+      .def("check_edge", &check_edge_of, py::arg("q0"), py::arg("q1"),
+           ("The straight joint-space edge with what refuses it: in steps, or by conservative advancement." +
+            option_help(edge_fields()))
+               .c_str())
       .def_property_readonly(
           "motion_bounds", [](const CollisionChecker& c) { return motion_bounds(c); },
           "(n,) bounds on how far any point moves when a joint moves by one unit [m/rad or m/m].")
       .def("clone", &CollisionChecker::clone, "The same checker with scratch of its own, for another thread.")
-      .def(
-          "edge_is_free",
-          [](CollisionChecker& c, const ArrayLike& q0, const ArrayLike& q1, const Given<double>& given_step) {
-            const double step = taken(given_step, "joint_step");
-            if (!(step > 0)) throw InvalidInput("joint_step = " + std::to_string(step) + ": must be > 0");
-            return c.edge_is_free(configuration(c, q0, "q0"), configuration(c, q1, "q1"), step);
-          },
-          py::arg("q0"), py::arg("q1"), py::arg("joint_step") = 0.02,
-          "The straight joint-space edge, checked so finely that no joint moves more than `joint_step` [rad or m].")
+      .def("edge_is_free", &edge_is_free_of, py::arg("q0"), py::arg("q1"), py::arg("joint_step") = 0.02,
+           "The straight joint-space edge, checked so finely that no joint moves more than `joint_step` [rad or m].")
       .def("__repr__", [](const CollisionChecker& c) {
         return "CollisionChecker('" + c.group().robot().name() + "', group '" + c.group().name() + "', " +
                std::to_string(c.world().objects().size()) + " objects)";

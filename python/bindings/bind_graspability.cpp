@@ -72,7 +72,8 @@ void bind_evaluation(py::module_& m) {
       [](const HeightMap& map, const Hand& gripper, double angle, double opening, double tip_height,
          const py::kwargs& options) {
         const GraspabilityOptions read = read_options(graspability_fields(), options, "graspability_map");
-        const auto values = graspability_map(map, gripper, angle, opening, tip_height, read);
+        const auto values =
+            interruptible([&] { return graspability_map(map, gripper, angle, opening, tip_height, read); });
         py::array_t<float> out({map.ny, map.nx});
         std::copy(values.begin(), values.end(), out.mutable_data());
         return out;
@@ -86,7 +87,8 @@ void bind_evaluation(py::module_& m) {
       [](const Hand& gripper, double opening, double angle, double resolution,
          const py::kwargs& options) -> MaskImages {
         const GraspabilityOptions read = read_options(graspability_fields(), options, "hand_masks");
-        const HandMasks masks = make_hand_masks(gripper, opening, angle, resolution, read.margin);
+        const HandMasks masks =
+            interruptible([&] { return make_hand_masks(gripper, opening, angle, resolution, read.margin); });
         py::dict out;
         for (const auto& [name, mask] :
              {std::pair{"contact", &masks.contact}, {"fingers", &masks.fingers}, {"palm", &masks.palm}}) {

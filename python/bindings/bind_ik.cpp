@@ -1,10 +1,8 @@
-#include <algorithm>
 #include <memory>
 #include <optional>
 
 #include "bindings.hpp"
 #include "mmgrasp/collision/collision_ik.hpp"
-#include "mmgrasp/robot/detail/whole_turns.hpp"
 #include "mmgrasp/robot/ik.hpp"
 #include "mmgrasp/robot/ik_branches.hpp"
 #include "mmgrasp/robot/ik_objective.hpp"
@@ -92,14 +90,19 @@ void bind_ik_result(py::module_& m) {
       });
 }
 
+/// What a world leaves of the configurations; all of them without one. The checker is made for it.
+ConfigurationFilter free_of(const JointGroup& group, const World* world, std::optional<CollisionChecker>& checker) {
+  if (!world) return {};
+  checker.emplace(with_sampled_pairs(group), *world);
+  return [&checker](const Eigen::VectorXd& q) { return checker->rejection(q); };
+}
+
 IkBranches branches(const JointGroup& group, const Pose& T, const World* world, const IkOptions& options,
                     int redundant_values, bool all_turns) {
   std::optional<CollisionChecker> checker;
-  if (world) checker.emplace(with_sampled_pairs(group), *world);
-  const auto valid = [&](const Eigen::VectorXd& q) { return checker->rejection(q); };
+  const ConfigurationFilter valid = free_of(group, world, checker);
   return LongCall(py::none()).run([&](const Monitor& monitor) {
-    return solve_ik_branches(group, T, options, checker ? ConfigurationFilter(valid) : ConfigurationFilter(),
-                             redundant_values, monitor, all_turns);
+    return solve_ik_branches(group, T, options, valid, redundant_values, monitor, all_turns);
   });
 }
 
@@ -165,12 +168,12 @@ void bind_group_methods(py::module_& m) {
           [](const JointGroup& g, const ArrayLike& T_world_tip, int count, const World* world, bool all_turns,
              const py::kwargs& options) {
             if (count <= 0) throw InvalidInput("count = " + std::to_string(count) + ": must be > 0");
-            const IkBranches all =
-                branches(g, pose_argument(T_world_tip, "T_world_tip"), world,
-                         read_options(ik_fields(), options, "ik_all"), std::clamp(count, 8, 48), false);
-            std::vector<Eigen::VectorXd> first = all.solutions;
-            if (first.size() > static_cast<std::size_t>(count)) first.resize(count);
-            return rows_to_array(all_turns ? detail::all_whole_turns(g, first) : first);
+            const Pose T = pose_argument(T_world_tip, "T_world_tip");
+            const IkOptions read = read_options(ik_fields(), options, "ik_all");
+            std::optional<CollisionChecker> checker;
+            const ConfigurationFilter valid = free_of(g, world, checker);
+            return rows_to_array(interruptible(
+                [&](const Monitor& monitor) { return solve_ik_all(g, T, count, read, valid, all_turns, monitor); }));
           },
           py::arg("T_world_tip"), py::arg("count") = 16, py::arg("world") = py::none(), py::arg("all_turns") = false,
           ("Up to `count` solutions (k, n), the first ones farthest apart; ik_branches tells why others fell. They "

@@ -53,7 +53,12 @@ RobotMotion drive(const BasePath& path, const Robot& robot, const JointGroup& ar
                   double period) {
   if (arm.has_base()) throw InvalidInput("arm: must be a group without the base");
   const Eigen::VectorXd q = vector_argument(configuration, "configuration", arm.size());
-  return base_path_motion(path, robot.base(), robot.base_limits(), arm.names(), q, period);
+  return interruptible(
+      [&] { return base_path_motion(path, robot.base(), robot.base_limits(), arm.names(), q, period); });
+}
+
+RobotMotion drive_by(const DriveByResult& result, const std::vector<double>& openings, double period) {
+  return interruptible([&] { return drive_by_motion(result, openings, period); });
 }
 
 }  // namespace
@@ -96,7 +101,7 @@ void bind_robot_motion(py::module_& m) {
           "The motion of a drive of the robot's base within its limits, `path.duration(robot)` long, with the arm at a "
           "configuration (n,);\n"
           "points at most `period` [s] apart.")
-      .def_static("of_drive_by", &drive_by_motion, py::arg("result"), py::kw_only(),
+      .def_static("of_drive_by", &drive_by, py::arg("result"), py::kw_only(),
                   py::arg("openings") = std::vector<double>{}, py::arg("period") = 0.02,
                   "The motion that plan_drive_by found: points at most `period` [s] apart, and the gripper closing at "
                   "every task "

@@ -140,8 +140,7 @@ void bind_registration(py::module_& m) {
         const auto chosen = read_options(registration_fields(), options, "register_frame");
         const FrameUncertainty uncertainty =
             uncertainty_argument(image, py::reinterpret_borrow<OptionalArray>(pose_covariance), sigma);
-        py::gil_scoped_release release;
-        return register_frame(sdf, image, camera, uncertainty, chosen);
+        return interruptible([&] { return register_frame(sdf, image, camera, uncertainty, chosen); });
       },
       "sdf"_a, "image"_a, "camera"_a, py::kw_only(), "pose_covariance"_a, "sigma"_a = py::none(),
       ("Moves a frame's pose so that its depths meet the map: point to plane on the map's field, Gauss-Newton, "

@@ -76,7 +76,8 @@ void bind_trajectory(py::module_& m) {
       .def(
           "to_csv",
           [](const JointTrajectory& t, const OptionalArray& base_pose) {
-            return base_pose.is_none() ? t.to_csv() : robot_motion(t, base_pose_argument(base_pose)).to_csv();
+            const auto pose = base_pose_argument(base_pose);
+            return interruptible([&] { return pose ? robot_motion(t, pose).to_csv() : t.to_csv(); });
           },
           py::arg("base_pose") = py::none(),
           "Header time, names, name.velocity, ...; one line a sample. With base_pose (x, y, theta) of the standing "

@@ -44,7 +44,6 @@ from costly_work import (
     depth_segments,
     derivative_free,
     evaluated,
-    exact_sharing,
     exact_stops,
     far_route,
     fine_occupancy,
@@ -89,6 +88,7 @@ from costly_work import (
     shared,
     sharp_part,
     slab,
+    sliding_box,
     solved_batch,
     stl,
     supported,
@@ -97,7 +97,6 @@ from costly_work import (
     tour,
     tracked,
     trajectory,
-    weights,
 )
 from mmgrasp import _core
 
@@ -120,13 +119,12 @@ COSTLY: dict[str, Callable[[], CALL]] = {
     "JointGroup.ik_all": lambda: lambda: ARM.ik_all(TURNED, count=10**6, restarts=HUGE, time_limit=1000),
     "Mesh.from_arrays": of(lambda: lw.grid(700), lambda m: mg.Mesh.from_arrays(*m)),
     "Mesh.load": of(stl, mg.Mesh.load),
-    "_file_is_inside_out": of(stl, _core._file_is_inside_out),
+    "_file_is_inside_out": of(stl, lambda path: repeated(100, lambda: _core._file_is_inside_out(path))()),
     "LinkShape.mesh": of(stl, mg.LinkShape.mesh),
     "LinkShape.surface": lambda: lambda: mg.LinkShape(mg.Sphere(0.5)).surface(1500),
     "World.add_mesh": scene_file,
     "World.add_octree": octree_file,
     "World.add_points": of(lambda: CLOUD(5_000_000), lambda p: mg.World().add_points("p", p, 0.0005)),
-    "World.add_field": lambda: repeated(1000, lambda: mg.World().add_field("f", ao.distance_field(), resolution=0.002)),
     "World.add_sdf": of(fine_sdf, lambda s: repeated(50, lambda: mg.World().add_sdf("s", s))()),
     "World.add_occupancy": of(fine_occupancy, lambda o: repeated(5000, lambda: mg.World().add_occupancy("o", o))()),
     "Voxels": of(lambda: CLOUD(20_000_000), lambda p: _core.Voxels(p, 0.0005)),
@@ -135,8 +133,8 @@ COSTLY: dict[str, Callable[[], CALL]] = {
     "DistanceField.distances_and_gradients": of(points, lambda p: ao.distance_field().distances_and_gradients(p)),
     "CollisionChecker": of(slab, lambda m: lw.checker_of(m)()),
     "CollisionChecker.are_free": of(rows_of_arm, CHECKER().are_free),
-    "CollisionChecker.check_edge": lambda: lambda: CHECKER().check_edge(Q, Q / 2, joint_step=1e-9),
-    "CollisionChecker.edge_is_free": lambda: lambda: CHECKER().edge_is_free(Q, Q / 2, joint_step=1e-9),
+    "CollisionChecker.check_edge": of(sliding_box, lambda s: s[0].check_edge(*s[1:], joint_step=2e-9)),
+    "CollisionChecker.edge_is_free": of(sliding_box, lambda s: s[0].edge_is_free(*s[1:], joint_step=2e-9)),
     "ReachDatabase.build": lambda: lambda: mg.ReachDatabase.build(ARM, samples=2_000_000_000),
     "ReachDatabase.build_to": of(folder, lambda f: mg.ReachDatabase.build_to(f / "d", ARM, samples=2_000_000_000)),
     "ReachDatabase.build_parts": of(
@@ -167,11 +165,10 @@ COSTLY: dict[str, Callable[[], CALL]] = {
     "OccupancyMap.integrate": lambda: integrated(lambda: mg.mapping.OccupancyMap(resolution=0.01)),
     "OccupancyMap.query": of(points, ao.occupancy_map().query),
     "OccupancyMap.obstacle_cells": of(fine_occupancy, lambda o: [o.obstacle_cells() for _ in range(10_000)]),
-    "Hand.from_robot": lambda: (
-        lambda: mg.Hand.from_robot(ao.seven_joint_hand(), "tcp", approach=[0, 0, 1], closing=[1, 0, 0], postures=10**6)
-    ),
     "JointTrajectory.to_csv": of(trajectory, lambda t: t.to_csv()),
-    "Pipe.sample_grasps": lambda: lambda: ao.pipe().sample_grasps(50_000, draws=1000),
+    "Pipe.sample_grasps": lambda: (
+        lambda: ao.pipe().sample_grasps(1_000_000, draws=1_000_000, length_spacing=1e-6, angle_spacing=1e-3)
+    ),
     "SupportedFrame": supported,
     "ObjectPathEvaluator.evaluate": evaluated,
     "follow_object_path": followed,
@@ -197,7 +194,6 @@ COSTLY: dict[str, Callable[[], CALL]] = {
     "minimize_derivative_free": derivative_free,
     "optimised_order": optimised,
     "paired_order": paired,
-    "pairwise_weights": weights,
     "plan_base_route": far_route,
     "plan_cartesian": lambda: lambda: mg.plan_cartesian(CHECKER(), [POSE, AHEAD], near=Q, position_step=1e-12),
     "plan_straight_line": lambda: lambda: mg.planning.plan_straight_line(CHECKER(), Q, AHEAD, position_step=1e-12),
@@ -217,14 +213,13 @@ COSTLY: dict[str, Callable[[], CALL]] = {
     "segment_objects": of(lambda: CLOUD(3_000_000), lambda c: mg.mapping.segment_objects(c, leaf=0.001, patch=0.01)),
     "shape_diameters": lambda: segmented(lambda m: mg.grasping.shape_diameters(m, threads=1)),
     "share_stops": shared,
-    "share_stops, few": exact_sharing,
     "shortest_visiting_tour": tour,
     "simplify_mesh": hull_mesh,
     "solve_set_cover": set_cover,
     "synthesize_grasps": synthesis,
     "time_parameterize": lambda: timed(mg.time_parameterize),
     "time_parameterize_free": lambda: (
-        lambda: mg.planning.time_parameterize_free(CHECKER(), [Q, Q / 2], joint_step=1e-12)
+        lambda: mg.planning.time_parameterize_free(CHECKER(), [Q, Q / 2], joint_step=1e-9)
     ),
     "track_base": tracked,
     "verify.check_path": checked_path,

@@ -16,7 +16,7 @@ from argument_objects import ARM, BOX, POSE, Q
 from mmgrasp import _core
 
 CALL = Callable[[], Any]
-HUGE = 2**31 - 1
+HUGE = 2_000_000_000  # the most that is counted
 
 rng = np.random.default_rng(1)
 
@@ -108,19 +108,9 @@ def tour() -> CALL:
     return lambda: _core.shortest_visiting_tour(lengths)
 
 
-def exact_sharing() -> CALL:
-    times = rng.uniform(1, 2, (212, 212))
-    return lambda: _core.share_stops(times, [1.0] * 12, 100)
-
-
 def assignment() -> CALL:
     costs = rng.random((4000, 4000)) + np.arange(4000) * np.arange(4000)[:, None] * 1e-6
     return lambda: _core.cheapest_assignment(costs)
-
-
-def weights() -> CALL:
-    given = np.ones((1500, 1500))
-    return lambda: _core.pairwise_weights(given)
 
 
 def set_cover() -> CALL:
@@ -189,8 +179,8 @@ def rays() -> CALL:
 
 def rendered() -> CALL:
     camera = mg.mapping.PinholeCamera(width=4000, height=4000, fx=2000.0, fy=2000.0, cx=2000.0, cy=2000.0)
-    scene = [mg.LinkShape(slab(100))]
-    return lambda: mg.mapping.render_depth(scene, camera, mg.pose([0.05, 0.05, -0.3]), threads=1)
+    scene = [mg.LinkShape(on_sphere(3000))]
+    return lambda: mg.mapping.render_depth(scene, camera, np.eye(4), threads=1)
 
 
 def height_map(side: int = 1500) -> mg.mapping.HeightMap:
@@ -274,7 +264,7 @@ def supported() -> CALL:
     return lambda: [mg.grasping.SupportedFrame(given, mg.grasping.BeamSupport(0, 0.0)) for _ in range(50)]
 
 
-def trajectory(samples: int = 300_000) -> mg.planning.JointTrajectory:
+def trajectory(samples: int = 2_000_000) -> mg.planning.JointTrajectory:
     return mg.planning.JointTrajectory(["i", "j", "k"], np.arange(samples) * 0.01, rng.random((samples, 3)))
 
 
@@ -304,13 +294,24 @@ def placed_base() -> CALL:
 
 def base_regions() -> CALL:
     problem, found = ao.part_supply_problem(), database()
-    grid = mg.base.BaseGrid([-2.0, -2.0], 0.004, 1000, 1000)
+    grid = mg.base.BaseGrid([-2.0, -2.0], 0.001, 4000, 4000)
     return lambda: mg.base.compute_base_regions(problem, found, grid)
+
+
+def sliding_box() -> tuple[mg.CollisionChecker, np.ndarray, np.ndarray]:
+    """A box that slides 1e-7 m above a floor: what is proven of the edge at once is as short as that."""
+    robot = mg.Robot.from_strings(
+        """<robot name="r"><link name="o"/><link name="a"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
+<joint name="i" type="prismatic"><parent link="o"/><child link="a"/><axis xyz="1 0 0"/><limit lower="0" upper="1" velocity="1"/></joint></robot>"""
+    )
+    world = mg.World()
+    world.add_box("floor", [3, 3, 0.1], mg.pose([0, 0, -0.1 - 1e-7]))
+    return mg.CollisionChecker(robot, world, robot.group(base_link="o", tip="a")), np.zeros(1), np.ones(1)
 
 
 def object_regions() -> CALL:
     problem, found = ao.part_supply_problem(), database()
-    grid = mg.base.BaseGrid([-2.0, -2.0], 0.004, 1000, 1000)
+    grid = mg.base.BaseGrid([-2.0, -2.0], 0.001, 4000, 4000)
     return lambda: mg.base.ObjectRegions.compute(problem, found, grid)
 
 
@@ -327,21 +328,23 @@ def far_route() -> CALL:
 
 
 def blind_motion() -> CALL:
+    """The square post cannot turn between the walls beside it, so no motion leads from one quarter turn to the next."""
     world = mg.World()
-    world.add_box("block", [0.2, 0.2, 0.2], mg.pose([*POSE[:3, 3]]))
-    goal = np.array([2.9, 1.9, 0.9])
-    checker = mg.CollisionChecker(ao.ROBOT, mg.World(), ARM)
-    region = _core.ToolRegion(mg.pose([50, 0, 0]))
-    del world, goal
-    return lambda: mg.plan_motion(checker, start=Q, regions=[region], time_limit=1000)
+    for side in (-1, 1):
+        world.add_box(f"wall {side}", [0.01, 0.4, 0.6], mg.pose([side * 0.062, 0, 0]))
+    checker = mg.CollisionChecker(ao.ROBOT, world, ARM)
+    return lambda: mg.plan_motion(
+        checker, start=[0, 0.5, 0.5], goal=[np.pi / 2, 0.5, 0.5], time_limit=1000, max_iterations=HUGE
+    )
 
 
 def derivative_free() -> CALL:
     def slow(x: np.ndarray) -> float:
-        return float(np.sum(np.sin(100 * x) ** 2 + x**2))
+        spread = np.linalg.svd(np.sin(np.outer(x, np.arange(200))), compute_uv=False)
+        return float(np.sum(spread) + x @ x)
 
     return lambda: mg.optim.minimize_derivative_free(
-        slow, np.full(2, 0.5), np.full(2, -1), np.ones(2), max_evaluations=10**8, tolerance=1e-300
+        slow, np.full(40, 0.5), np.full(40, -1), np.ones(40), max_evaluations=10**8, tolerance=1e-300
     )
 
 
@@ -405,9 +408,11 @@ CLOUD = lw.table_scan
 DRIVEN: dict[str, Callable[[mg.planning.DriveByResult], Any]] = {
     "DriveByResult.to_csv": lambda d: d.to_csv(between=20_000),
     "WholeBodyTrajectory.sampled": lambda d: d.trajectory.sampled(between=50_000),
-    "WholeBodyTrajectory.rolled_out": lambda d: d.trajectory.rolled_out(1_000_000),
+    "WholeBodyTrajectory.rolled_out": lambda d: repeated(
+        20, lambda: d.trajectory.rolled_out(1_000_000 // len(d.trajectory.times))
+    )(),
     "WholeBodyTrajectory.to_csv": lambda d: d.trajectory.to_csv(between=20_000),
-    "RobotMotion.of_drive_by": lambda d: mg.planning.RobotMotion.of_drive_by(d, period=1e-4),
+    "RobotMotion.of_drive_by": lambda d: repeated(20, lambda: mg.planning.RobotMotion.of_drive_by(d, period=1e-4))(),
 }
 
 

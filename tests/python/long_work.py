@@ -153,7 +153,7 @@ def _height_map(folder: Path) -> Callable[[], Any]:
     depth = np.zeros((2000, 3000), np.float32)
     depth[0, 0] = 1.0  # all others are a hole
     image = mg.mapping.DepthImage(depth, camera)
-    return lambda: mg.mapping.make_height_map(image, mg.pose([0, 0, 0]), [2.0, 2.0], hole_radius=2**31 - 1)
+    return lambda: mg.mapping.make_height_map(image, mg.pose([0, 0, 0]), [2.0, 2.0], hole_radius=2_000_000_000)
 
 
 WORK: dict[str, Work] = {

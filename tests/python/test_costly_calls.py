@@ -39,7 +39,7 @@ CHEAP = {
         Hand.opening_at Hand.posture_values Hand.pregrasp_opening Hand.share_open LineGrasp.probability LineGrasp.success
         PinholeCamera.project Pipe.grasp centric_grasps closing_outcome drive_arc flat_contact grasp_holding joint_velocity
         line_contact platform_velocity pose_to_xyz_quat pose_to_xyz_rpy push_grasp push_speed_limit quat_xyzw_from_rotation
-        soft_finger_torque wheel_speeds make_base_grid
+        soft_finger_torque wheel_speeds make_base_grid pairwise_weights
         """,
     "one configuration, one pose, one time, one place or one body": """
         verify.width_unlike_opening verify.broken_seal seal_gap _centre_of_mass
@@ -51,12 +51,13 @@ CHEAP = {
         JointTrajectory.at ReachDatabase.difference ReachDatabase.nearest ReachDatabase.query ReachDatabase.solve
         ReachDatabase.part_count Roadmap.near Robot.collisions Robot.group Robot.link_poses Robot.mount Robot.values
         Robot.velocity_scale Robot.with_disabled_pairs Robot.with_link RobotMotion.append RobotMotion.command_gripper
-        RobotMotion.wait WholeBodyTrajectory.at WholeBodyTrajectory.drive_at World.add World.add_box World.add_cylinder
+        RobotMotion.wait WholeBodyTrajectory.at WholeBodyTrajectory.drive_at World.add World.add_box World.add_cylinder World.add_field
         World.add_floor World.add_sphere World.allow World.attach World.detach World.disallow World.forget World.move World.remove
         SupportedFrame.displacement SupportedFrame.largest_displacement SupportedFrame.section_forces SupportedFrame.state
         BeamFrame.deflection BeamFrame.stiffness
         """,
-    "at most a thousand waypoints, or 4,096 seeds": """
+    "at most a thousand waypoints or postures, or 4,096 seeds": """
+        Hand.from_robot
         WholeBodyProgram.trajectory WholeBodyProgram.violations drive_by_program _first_drive_by_guess
         IkSeedDatabase.load IkSeedDatabase.save
         """,
@@ -114,15 +115,6 @@ def test_some_costly_calls_hear_ctrl_c() -> None:
     check(QUICK)
 
 
-NOT_YET = (
-    """
-    JointGroup.ik_all World.add_field CollisionChecker.check_edge CollisionChecker.edge_is_free ObjectRegions.compute
-    compute_base_regions _file_is_inside_out Hand.from_robot JointTrajectory.to_csv Pipe.sample_grasps graspability_map hand_masks
-    minimize_derivative_free pairwise_weights plan_motion render_depth WholeBodyTrajectory.rolled_out RobotMotion.of_drive_by
-    """.split()
-    + ["share_stops, few", "register_frame"]
-)
-"""Their arguments in the table are too small or refused, so that they return before Ctrl-C comes (register_frame: 6 s after it)."""
 SHORT = """
     JointGroup.jacobian_batch Voxels MeshDistanceField DistanceField.distances DistanceField.distances_and_gradients
     CollisionChecker.are_free CapabilityMap.score CapabilityMap.best_base_distance DepthImage.points ProbabilisticSdf.cast_rays
@@ -136,4 +128,4 @@ PARTS = 4
 @pytest.mark.slow
 @pytest.mark.parametrize("part", range(PARTS))
 def test_costly_calls_hear_ctrl_c(part: int) -> None:
-    check([name for name in COSTLY if name not in NOT_YET][part::PARTS])
+    check(list(COSTLY)[part::PARTS])

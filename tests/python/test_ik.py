@@ -52,6 +52,18 @@ def test_objectives_and_weights_are_checked(arm: mg.robot.JointGroup) -> None:
         arm.ik(TARGET, joint_weights=[0.0] * arm.size)
 
 
+@pytest.mark.parametrize("group", ["arm", "arm_with_torso"])
+def test_ik_all_of_a_redundant_arm_finds_as_many_as_are_asked_for(robot: mg.Robot, group: str) -> None:
+    """Seven joints, of which one is sampled, and eight, which random descents search."""
+    arm = robot.group(group, tip="gripper_tcp")
+    target = arm.fk([0.3, 0.3, 0.2, 1.0, 0.3, 1.0, 0.2]) if group == "arm" else TARGET
+    found = arm.ik_all(target, count=40)
+    assert found.shape == (40, arm.size)
+    assert max(np.abs(arm.fk(q) - target).max() for q in found) < 2e-4
+    apart = np.abs(found[:, None] - found[None]).max(axis=2)
+    assert apart[~np.eye(40, dtype=bool)].min() > 1e-2
+
+
 def test_ik_all_is_diverse_and_free(robot: mg.Robot, arm: mg.robot.JointGroup) -> None:
     world = mg.World()
     world.add_box("table", size=(0.6, 1.2, 0.04), pose=mg.pose([0.9, 0, 0.7]))

@@ -54,9 +54,7 @@ ENDLESS: dict[str, Callable[..., Any]] = {
     "plan_straight_line": lambda **k: mg.planning.plan_straight_line(CHECKER, Q, AHEAD, position_step=1e-12, **k),
     "plan_cartesian": lambda **k: mg.plan_cartesian(CHECKER, [POSE, AHEAD], near=Q, position_step=1e-12, **k),
     "time_parameterize": lambda **k: mg.time_parameterize(LONG_PATH, [1] * 3, [1] * 3, jerk_limits=[1] * 3, **k),
-    "time_parameterize_free": lambda **k: mg.planning.time_parameterize_free(
-        CHECKER, [Q, Q / 2], joint_step=1e-12, **k
-    ),
+    "time_parameterize_free": lambda **k: mg.planning.time_parameterize_free(CHECKER, [Q, Q / 2], joint_step=1e-9, **k),
 }
 
 

@@ -267,6 +267,26 @@ def try_leaf(small: dict[str, Any], folder: Path) -> None:
         mg.mapping.fit_cuboids(cube, leaf=1 / 800)
 
 
+def try_capability(small: dict[str, Any], folder: Path) -> None:
+    """A cube of 200 voxels a side with 50 poses is at the limit; one pose more, or the default 200, is refused at once."""
+    far = mg.base.CapabilityMap
+    given = {"lower": (-1, -1, -1), "upper": (1, 1, 1), "voxel": 0.01}
+    for poses in (51, 200):
+        with pytest.raises(mg.InvalidInput, match="4e8 tool poses"):
+            far.build(ARM, poses=poses, **given)
+    with pytest.raises(mg.InvalidInput, match="rolls"):  # looked at after the number of poses
+        far.build(ARM, poses=50, rolls=3, **given)
+
+
+def try_masks(small: dict[str, Any], folder: Path) -> None:
+    """The hand's masks reach hypot(half its width, half its length) / resolution cells."""
+    with pytest.raises(mg.InvalidInput, match="10000 cells"):
+        mg.grasping.hand_masks(OBJECTS["Hand"](), 0.05, 0.3, 1e-7)
+    with pytest.raises(mg.InvalidInput, match="at most 65535"):
+        mg.grasping.hand_masks(OBJECTS["Hand"](), 0.05, 0.3, 1e-4)
+    mg.grasping.hand_masks(OBJECTS["Hand"](), 0.05, 0.3, 1e-3)
+
+
 def try_floor_map(small: dict[str, Any], folder: Path) -> None:
     """A chessboard of 200 x 200 black cells, none beside another, and one more."""
     image = np.full((400, 402), 254, np.uint8)
@@ -371,6 +391,8 @@ TRIED: dict[str, Tried] = {
     "reach queries": try_reach_queries,
     "`plane_iterations`; set cover's `elements`; `track_base`": try_iterations,
     "`fit_cuboids`": try_leaf,
+    "`CapabilityMap.build`": try_capability,
+    "masks of a hand (`hand_masks`, `graspability_map`, `evaluate_graspability`)": try_masks,
     "maps of a floor": try_floor_map,
     "`mmgrasp scan`": try_scan,
     "`mmgrasp segment`, `segment_mesh`": try_segment,

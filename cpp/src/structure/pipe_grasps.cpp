@@ -5,6 +5,7 @@
 #include <numeric>
 #include <string>
 
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/limits.hpp"
@@ -121,6 +122,7 @@ SampledGrasps sample_pipe_grasps(const Pipe& pipe, int count, const PipeGraspOpt
   Rng rng(options.seed);
   int fruitless = 0;
   while (static_cast<int>(grasps.size()) < count && fruitless < options.draws) {
+    detail::throw_if_interrupted();
     const double at = rng.uniform(0, room);
     const int section = static_cast<int>(std::upper_bound(up_to.begin(), up_to.end(), at) - up_to.begin());
     const double length = at - (section == 0 ? 0 : up_to[section - 1]) + options.end_margin;

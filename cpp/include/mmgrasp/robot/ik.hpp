@@ -70,9 +70,10 @@ MMGRASP_EXPORT IkResult solve_ik(const JointGroup& group, const Pose& T_world_ti
 /// complete; otherwise random restarts search for solutions that differ by more than 0.1 rad. Solutions are arm
 /// postures: where limits leave a joint more than one turn, each comes in the turns nearest to the middle of the limits
 /// alone, and with `all_turns` in every whole turn of its joints within limits, one posture after the other; `count`
-/// counts postures.
+/// counts postures. Stopped by the monitor, it returns what it has found.
 MMGRASP_EXPORT std::vector<Eigen::VectorXd> solve_ik_all(const JointGroup& group, const Pose& T_world_tip, int count,
                                                          const IkOptions& options = {},
-                                                         const ConfigurationFilter& valid = {}, bool all_turns = false);
+                                                         const ConfigurationFilter& valid = {}, bool all_turns = false,
+                                                         const Monitor& monitor = {});
 
 }  // namespace mmgrasp

@@ -5,6 +5,7 @@
 
 #include "collision/narrow/field_query.hpp"
 #include "collision/narrow/stages.hpp"
+#include "mmgrasp/core/detail/interruption.hpp"
 
 namespace mmgrasp::detail {
 
@@ -73,6 +74,7 @@ bool EdgeWalk::intervals_free() {
   bool depth_first = false;
   for (std::size_t next = 0; next < queue_.size();) {
     depth_first = depth_first || queue_.size() - next > kMaxWaitingIntervals;
+    throw_if_interrupted();
     const Interval interval = depth_first ? queue_.back() : queue_[next];
     if (depth_first) {
       // All that wait were put there before: their lists lie within this one's end.
@@ -108,6 +110,7 @@ void EdgeWalk::queue(const std::vector<Open>& side, std::size_t bodies) {
 
 bool EdgeWalk::each_is_free() {
   for (int at = 1; at < pieces_; ++at) {
+    throw_if_interrupted();
     ++checks_;
     place(at);
     if (!search_->is_free(*placement_)) return false;

@@ -6,6 +6,7 @@
 #include "collision/checker/checker_impl.hpp"
 #include "collision/edge/edge_continuous.hpp"
 #include "mmgrasp/collision/detail/edge_steps.hpp"
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/core/parallel.hpp"
@@ -38,6 +39,7 @@ EdgeResult stepped_edge(CollisionChecker& checker, const Eigen::VectorXd& q0, co
   long i = 0;
   Eigen::VectorXd q = q0;
   while (i < pieces && checker.is_free(q)) {
+    detail::throw_if_interrupted();
     ++i;
     q = q0 + (q1 - q0) * (static_cast<double>(i) / static_cast<double>(pieces));
   }

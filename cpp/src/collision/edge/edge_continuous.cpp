@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "collision/checker/pair_tests.hpp"
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 
 namespace mmgrasp::detail {
@@ -54,6 +55,7 @@ class Advance {
   bool run(double end, double& fraction, std::optional<Contact>& contact) {
     double at = 0;
     while (!open_.empty()) {
+      throw_if_interrupted();
       ++checks_;
       placement_.place_links(q0_ + delta_ * at);
       std::size_t kept = 0;

@@ -1,4 +1,5 @@
 #include "grasp/graspability/graspability_layers.hpp"
+#include "mmgrasp/core/detail/interruption.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -66,6 +67,7 @@ void smooth(std::vector<float>& values, int nx, int ny, int r) {
     std::copy(row, row + w, some.data() + static_cast<std::size_t>(y) * w);
   }
   for (int pass = 0; pass < 3; ++pass) {
+    throw_if_interrupted();
     mean_along_rows(some, other, w, h, r);
     mean_along_columns(other, some, w, h, r);
   }
@@ -80,6 +82,7 @@ void smooth(std::vector<float>& values, int nx, int ny, int r) {
 Pieces::Pieces(const HeightMap& map, double above, double step) : map_(map), label_(map.height.size(), -1) {
   const auto limit = static_cast<float>(above), jump = static_cast<float>(step);
   std::vector<int> queue;
+  InterruptionPoll poll;
   for (int seed = 0; seed < map.nx * map.ny; ++seed) {
     if (label_[seed] >= 0 || !(map.height[seed] > limit)) continue;
     const int label = static_cast<int>(pieces_.size());
@@ -87,6 +90,7 @@ Pieces::Pieces(const HeightMap& map, double above, double step) : map_(map), lab
     label_[seed] = label;
     Piece piece;
     for (std::size_t next = 0; next < queue.size(); ++next) {
+      poll();
       const int i = queue[next], x = i % map.nx, y = i / map.nx;
       piece.middle += map.centre(x, y);
       const auto visit = [&](int k) {
@@ -142,6 +146,7 @@ LayerMap layer_map(const TipLayer& layer, const HandRuns& hand, int smoothing_ce
   const int first = std::max(0, layer.contact.first_row() - hand.contact.radius);
   const int last = std::min(ny - 1, layer.contact.last_row() + hand.contact.radius);
   for (int y = first; y <= last; ++y) {
+    throw_if_interrupted();
     convolve_row(layer.contact, hand.contact, y, contact.data());
     if (std::all_of(contact.begin(), contact.end(), [](std::uint16_t c) { return c == 0; })) continue;
     convolve_row(layer.fingers, hand.fingers, y, touched.data());

@@ -6,12 +6,15 @@
 
 #include "grasp/hand/hand_outline.hpp"
 #include "grasp/hand/row_spans.hpp"
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
 namespace {
+
+constexpr int kMostRadius = 10000;  // cells
 
 /// A rectangle in the hand's frame: closing axis u, across it v.
 struct HandRectangle {
@@ -38,6 +41,7 @@ void draw(const HandRectangle& r, double angle, double resolution, MaskImage& ma
   const Eigen::Vector2d along = exact_direction(angle), across(-along.y(), along.x());
   constexpr double kSlack = 1e-9;
   for (int dy = -mask.radius; dy <= mask.radius; ++dy) {
+    detail::throw_if_interrupted();
     for (int dx = -mask.radius; dx <= mask.radius; ++dx) {
       const double u = (dx * along.x() + dy * along.y()) * resolution,
                    v = (dx * across.x() + dy * across.y()) * resolution;
@@ -49,8 +53,11 @@ void draw(const HandRectangle& r, double angle, double resolution, MaskImage& ma
 
 MaskImage mask_of(const std::vector<HandRectangle>& rectangles, double angle, double resolution) {
   MaskImage mask;
-  for (const HandRectangle& r : rectangles)
-    mask.radius = std::max(mask.radius, static_cast<int>(std::ceil(r.reach() / resolution)));
+  double cells = 0;
+  for (const HandRectangle& r : rectangles) cells = std::max(cells, std::ceil(r.reach() / resolution));
+  require(cells <= kMostRadius, "resolution", resolution,
+          "must not make masks of the hand reach farther than 10000 cells");
+  mask.radius = static_cast<int>(cells);
   mask.cells.assign(static_cast<std::size_t>(mask.width()) * mask.width(), 0);
   for (const HandRectangle& r : rectangles) draw(r, angle, resolution, mask);
   return mask;
@@ -63,7 +70,8 @@ int MaskImage::count() const {
 }
 
 void MaskImage::check(const char* field) const {
-  require(radius >= 0 && radius <= 10000, std::string(field) + ".radius", radius, "must be from 0 to 10000 cells");
+  require(radius >= 0 && radius <= kMostRadius, std::string(field) + ".radius", radius,
+          "must be from 0 to 10000 cells");
   require(cells.size() == static_cast<std::size_t>(width()) * width(), field, std::to_string(cells.size()) + " cells",
           "must be (2 radius + 1) squared");
   require(count() <= 65535, field, std::to_string(count()) + " ones", "must be at most 65535 (use coarser cells)");

@@ -11,6 +11,7 @@
 
 #include "mapping/sdf/frame_checks.hpp"
 #include "mmgrasp/core/detail/file_content.hpp"
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/geometry/octree.hpp"
@@ -100,6 +101,36 @@ class UnknownCells {
 
 }  // namespace
 
+namespace {
+
+/// Adds a frame as octomap's insertPointCloud() does, with one ray for each cell that holds a pixel, but piece by
+/// piece: all cells are known, and Ctrl-C was heard, before the first one changes.
+void cast(octomap::OcTree& tree, const octomap::Pointcloud& ends, const octomap::point3d& eye, double longest) {
+  constexpr std::size_t kPiece = 500;  // rays, of up to some thousand cells each
+  octomap::KeySet hit, free, occupied;
+  octomap::Pointcloud piece;
+  const auto cast_piece = [&] {
+    detail::throw_if_interrupted();
+    tree.computeUpdate(piece, eye, free, occupied, longest);
+    piece.clear();
+  };
+  detail::InterruptionPoll poll;
+  for (const octomap::point3d& end : ends) {
+    poll();
+    const octomap::OcTreeKey key = tree.coordToKey(end);
+    if (!hit.insert(key).second) continue;
+    piece.push_back(tree.keyToCoord(key));
+    if (piece.size() == kPiece) cast_piece();
+  }
+  cast_piece();
+  detail::throw_if_interrupted();
+  for (const octomap::OcTreeKey& key : free)
+    if (occupied.count(key) == 0) tree.updateNode(key, false, true);
+  for (const octomap::OcTreeKey& key : occupied) tree.updateNode(key, true, true);
+}
+
+}  // namespace
+
 struct OccupancyMap::Impl {
   explicit Impl(const OccupancyOptions& chosen) : options(chosen), tree(chosen.resolution) {
     tree.setProbHit(chosen.hit);
@@ -146,6 +177,7 @@ OccupancyReport OccupancyMap::integrate(const DepthImage& image, const DepthCame
   double farthest = eye.cwiseAbs().maxCoeff();
   octomap::Pointcloud ends;
   for (int v = 0; v < frame.camera.height; ++v) {
+    detail::throw_if_interrupted();
     for (int u = 0; u < frame.camera.width; ++u) {
       const float z = frame.at(u, v);
       if (!(z > 0)) continue;
@@ -167,7 +199,7 @@ OccupancyReport OccupancyMap::integrate(const DepthImage& image, const DepthCame
   if (impl_.use_count() > 1) impl_ = std::make_shared<Impl>(*impl_);
   const double longest = std::isfinite(impl_->options.max_range) ? impl_->options.max_range : -1;
   const octomap::point3d origin(static_cast<float>(eye.x()), static_cast<float>(eye.y()), static_cast<float>(eye.z()));
-  impl_->tree.insertPointCloud(ends, origin, longest, true, true);
+  cast(impl_->tree, ends, origin, longest);
   impl_->tree.updateInnerOccupancy();
   impl_->tree.prune();
   ++impl_->frames;

@@ -14,7 +14,7 @@
 namespace mmgrasp {
 namespace {
 
-constexpr double kMostVoxels = 1e8;
+constexpr double kMostPoses = 4e8;  ///< Of all voxels: some 33 bytes each for an arm of seven joints.
 
 double steps_along(const CapabilityOptions& options, int axis) {
   return (options.upper[axis] - options.lower[axis]) / options.voxel;
@@ -35,7 +35,8 @@ void CapabilityOptions::check() const {
     voxels *= std::round(steps);
   }
   require(poses >= 1 && poses <= 10000, "poses", poses, "must be in [1, 10000]");
-  require(voxels * poses <= kMostVoxels * 100, "voxel", voxel, "makes more than 1e10 tool poses");
+  require(voxels * poses <= kMostPoses, "voxel", voxel,
+          "must not make more than 4e8 tool poses (voxels times `poses`)");
   require(rolls >= 1 && rolls <= poses && poses % rolls == 0, "rolls", rolls, "must divide poses");
   require_numbers(approach, "approach");
   require(approach.norm() > 1e-9, "approach", approach.norm(), "must not be zero");

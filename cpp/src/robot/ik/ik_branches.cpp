@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/detail/stopwatch.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/limits.hpp"
@@ -28,7 +29,7 @@ void search(const JointGroup& group, const Pose& T_world_tip, int count, const I
   const Eigen::VectorXd middle = 0.5 * (group.sample_lower() + group.sample_upper());
   const detail::WholeTurns turns(group);
   std::vector<Eigen::VectorXd> seen;
-  const long budget = static_cast<long>(options.restarts + 1) * count;
+  const long budget = (static_cast<long>(options.restarts) + 1) * count;
   for (long i = 0; i < budget && static_cast<int>(branches.solutions.size()) < count; ++i) {
     if (time_limit.expired() || monitor.stopped()) return;
     Eigen::VectorXd q = starts.next();
@@ -54,13 +55,14 @@ void search(const JointGroup& group, const Pose& T_world_tip, int count, const I
 
 /// Branches in closed form; false when the group has none.
 bool enumerate(const JointGroup& group, const Pose& T_world_tip, int redundant_values, const IkOptions& options,
-               const ConfigurationFilter& valid, IkBranches& branches) {
+               const ConfigurationFilter& valid, const Monitor& monitor, IkBranches& branches) {
   const detail::Candidates candidates = detail::closed_form_candidates(group, T_world_tip, redundant_values);
   if (!candidates.known_form) return false;
   branches.complete = !candidates.free;
   branches.redundant_joint = candidates.redundant_joint;
   branches.rejections.add(Rejection::unreachable, candidates.without);
   for (const Eigen::VectorXd& q : candidates.q) {
+    if (monitor.stopped()) break;
     double position_error = 0, rotation_error = 0;
     Rejection verdict = group.within_limits(q) ? Rejection::none : Rejection::limits;
     if (verdict == Rejection::none && valid) verdict = valid(q);
@@ -83,7 +85,7 @@ IkBranches branches_of(const JointGroup& group, const Pose& T_world_tip, int cou
     branches.rejections.add(Rejection::unreachable);
     return branches;
   }
-  const bool enumerated = enumerate(group, T_world_tip, redundant_values, options, valid, branches);
+  const bool enumerated = enumerate(group, T_world_tip, redundant_values, options, valid, monitor, branches);
   // A redundant joint's sampled values may all miss what little room its limits leave; so may the one split of a
   // singularity that the closed form keeps.
   const bool partial = branches.redundant_joint >= 0 || !branches.complete;
@@ -109,10 +111,12 @@ IkBranches solve_ik_branches(const JointGroup& group, const Pose& T_world_tip, c
 }
 
 std::vector<Eigen::VectorXd> solve_ik_all(const JointGroup& group, const Pose& T_world_tip, int count,
-                                          const IkOptions& options, const ConfigurationFilter& valid, bool all_turns) {
+                                          const IkOptions& options, const ConfigurationFilter& valid, bool all_turns,
+                                          const Monitor& monitor) {
   require_count(count, "count", 0, 1'000'000);
-  const int values = std::clamp(count, 8, 48);
-  std::vector<Eigen::VectorXd> solutions = branches_of(group, T_world_tip, count, values, options, valid, {}).solutions;
+  const int values = std::clamp(count, 8, 10'000);  // of a redundant joint, where `count` asks for many
+  std::vector<Eigen::VectorXd> solutions =
+      branches_of(group, T_world_tip, count, values, options, valid, monitor).solutions;
   if (static_cast<int>(solutions.size()) > count) solutions.resize(count);
   return all_turns ? detail::all_whole_turns(group, solutions) : solutions;
 }
@@ -123,6 +127,7 @@ void spread_apart(const JointGroup& group, std::vector<Eigen::VectorXd>& solutio
   std::vector<double> distance(solutions.size());
   for (std::size_t i = 0; i < solutions.size(); ++i) distance[i] = -(solutions[i] - middle).norm();
   for (std::size_t done = 0; done < solutions.size(); ++done) {
+    detail::throw_if_interrupted();
     const auto farthest = std::max_element(distance.begin() + static_cast<long>(done), distance.end());
     const std::size_t at = farthest - distance.begin();
     std::swap(solutions[done], solutions[at]);

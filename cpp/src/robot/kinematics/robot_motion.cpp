@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/limits.hpp"
@@ -85,6 +86,7 @@ std::string RobotMotion::to_csv() const {
   text += gripper.empty() ? "\n" : ",gripper\n";
   std::size_t next_event = 0;
   for (std::size_t i = 0; i < times.size(); ++i) {
+    detail::throw_if_interrupted();
     std::string row;
     append_values(row, &times[i], 1);
     append_values(row, base_poses[i].data(), 3);

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/limits.hpp"
 
@@ -56,6 +57,7 @@ std::string JointTrajectory::to_csv() const {
   text += "\n";
   const Eigen::VectorXd zeros = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(names.size()));
   for (std::size_t i = 0; i < times.size(); ++i) {
+    detail::throw_if_interrupted();
     append_number(text, times[i]);
     append_row(text, positions[i]);
     append_row(text, i < velocities.size() ? velocities[i] : zeros);

@@ -2,6 +2,7 @@
 #include <sstream>
 
 #include "bindings.hpp"
+#include "given.hpp"
 #include "mmgrasp/geometry/detail/inside_out.hpp"
 #include "mmgrasp/geometry/fit_primitives.hpp"
 #include "mmgrasp/geometry/segment_mesh.hpp"
@@ -140,6 +141,14 @@ void bind_fitted_primitives(py::module_& m) {
       "of\nthe segment's convex hull, of those with surface on them (P1, section 5.2.2). `labels` (m,): the segment of "
       "each face, as\nMeshSegmentation.labels. Inner walls are never offered for grasping, nor are sides of a box with "
       "nothing on them. Raises\nInvalidInput when there is not one label >= 0 a face.");
+  m.def(
+      "segment_names",
+      [](const Given<std::vector<F>>& primitives) {
+        return segment_names(taken(primitives, "primitives", "FittedPrimitive"));
+      },
+      "primitives"_a,
+      "A name for each segment of a part by its primitive: the kind and the place among those of the kind, from 1, in "
+      "the order of the segments, largest area first: cylinder_1, box_1, cylinder_2.");
 }
 
 }  // namespace

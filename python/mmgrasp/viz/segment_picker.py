@@ -37,11 +37,11 @@ def picker_html(plan: GripperPlan) -> str:
 
 
 def picker_data(plan: GripperPlan) -> list[dict[str, Any]]:
-    """Each moved part: arrays as base64 of little-endian float32 (3 n, in its own frame [m]) and uint32; per segment a colour and a text."""
+    """Each moved part: arrays as base64 of little-endian float32 (3 n, in its own frame [m]) and uint32; per segment a colour, a name and a text."""
     out = []
     for name, segmentation in plan.segmentations.items():
         part = plan.assembly.parts[name]
-        primitives = plan.primitives[name]
+        names = plan.segment_names[name]
         out.append(
             {
                 "name": name,
@@ -50,10 +50,13 @@ def picker_data(plan: GripperPlan) -> list[dict[str, Any]]:
                 "labels": _packed(np.asarray(segmentation.labels), "<u4"),
                 "colours": [segment_colour(i) for i in range(len(segmentation.segments))],
                 "segments": [
-                    p.kind + (", a screw thread" if s.threaded else "")
-                    for p, s in zip(primitives, segmentation.segments, strict=True)
+                    ", a screw thread" if segment.threaded else "" for segment in segmentation.segments
                 ],
-                "keep_off": list(part.keep_off),
+                "names": names,
+                "keep_off": [
+                    *(number for k in part.keep_off for number in k.segments),
+                    *(names.index(chosen) for k in part.keep_off for chosen in k.names),
+                ],
             }
         )
     return out

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <string>
 #include <vector>
 
 #include "mmgrasp/core/export.hpp"
@@ -47,5 +48,9 @@ struct MMGRASP_EXPORT FittedPrimitive {
 /// is not one label >= 0 a face. Nothing when the monitor stops it.
 MMGRASP_EXPORT std::vector<FittedPrimitive> fit_primitives(const TriangleMesh& mesh, const std::vector<int>& labels,
                                                            const Monitor& monitor = {});
+
+/// A name for each segment: the kind of its primitive and its place among those of the kind, from 1, in the order of
+/// the segments, which segment_mesh() gives by size: "cylinder_1", "box_1", "cylinder_2".
+MMGRASP_EXPORT std::vector<std::string> segment_names(const std::vector<FittedPrimitive>& primitives);
 
 }  // namespace mmgrasp

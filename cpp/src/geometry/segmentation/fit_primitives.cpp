@@ -231,4 +231,12 @@ std::vector<FittedPrimitive> fit_primitives(const TriangleMesh& mesh, const std:
   return out;
 }
 
+std::vector<std::string> segment_names(const std::vector<FittedPrimitive>& primitives) {
+  std::map<PrimitiveKind, int> count;
+  std::vector<std::string> out;
+  for (const FittedPrimitive& p : primitives)
+    out.push_back(primitive_kind_name(p.kind) + ("_" + std::to_string(++count[p.kind])));
+  return out;
+}
+
 }  // namespace mmgrasp

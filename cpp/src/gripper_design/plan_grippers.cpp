@@ -183,7 +183,9 @@ class Planning {
       segmentation.diameter.threads = options_.threads;
       out.segmentation = segment_mesh(*moved[i]->mesh, segmentation, silent);
       out.segmentation.turned = outward_.turned(moved[i]->mesh.get());
-      if (!monitor_.stopped()) out.primitives = fit_primitives(*moved[i]->mesh, out.segmentation.labels, silent);
+      if (monitor_.stopped()) return;
+      const MeshSegmentation& cut = out.segmentation;
+      out.primitives = fit_primitives(*moved[i]->mesh, cut.labels, cut.threads, silent);
     }
   }
 

@@ -37,7 +37,7 @@ def run_segment(arguments: argparse.Namespace, console: Console) -> int:
         size = np.ptp(points, axis=0)
         _check_size(arguments, float(np.linalg.norm(size)))
         found = _core.segment_mesh(mesh, seed=arguments.seed, threads=arguments.threads, progress=report)
-        primitives = _core.fit_primitives(mesh, found.labels, progress=report)
+        primitives = _core.fit_primitives(mesh, found.labels, threads=found.threads, progress=report)
         content = segments_to_dict(arguments, mesh, size, found, primitives)
         if folder is not None:
             report("writing", 0.0)

@@ -218,7 +218,7 @@ TEST(SegmentMesh, AThreadedShankIsOneSegmentBesideTheHead) {
   const Bolt bolt;
   const MeshSegmentation found = segment_mesh(*bolt.mesh);
   ASSERT_EQ(found.segments.size(), 2u);
-  const auto fits = fit_primitives(*bolt.mesh, found.labels);
+  const auto fits = fit_primitives(*bolt.mesh, found.labels, found.threads);
   EXPECT_EQ(segment_names(fits), (std::vector<std::string>{"cylinder_1", "cylinder_2"}));
   for (std::size_t k = 0; k < fits.size(); ++k) {
     const bool head = fits[k].size.x() > 0.012;
@@ -238,7 +238,7 @@ TEST(SegmentMesh, MovesAndGrowsWithTheMesh) {
   const auto shaft = turned({{0.005, 0}, {0.005, 0.02}, {0.009, 0.02}, {0.009, 0.035}}, 32);
   for (const auto& mesh : {shaft, Bolt().mesh}) {
     const MeshSegmentation before = segment_mesh(*mesh);
-    const auto fits = fit_primitives(*mesh, before.labels);
+    const auto fits = fit_primitives(*mesh, before.labels, before.threads);
     for (const double scale : {0.1, 1.0, 20.0}) {
       const Eigen::Isometry3d T = Eigen::Translation3d(0.3 * scale, -0.11 * scale, 0.07 * scale) *
                                   Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, -2, 0.5).normalized());
@@ -246,7 +246,7 @@ TEST(SegmentMesh, MovesAndGrowsWithTheMesh) {
       for (Eigen::Vector3d& v : moved.vertices) v = T * (scale * v);
       const MeshSegmentation after = segment_mesh(moved);
       EXPECT_EQ(after.labels, before.labels) << scale;
-      const auto again = fit_primitives(moved, after.labels);
+      const auto again = fit_primitives(moved, after.labels, after.threads);
       ASSERT_EQ(segment_names(again), segment_names(fits));
       for (std::size_t k = 0; k < fits.size(); ++k)
         EXPECT_LT((again[k].size / scale - fits[k].size).norm(), 1e-3 * fits[k].size.norm()) << scale;
@@ -367,6 +367,9 @@ TEST(FitPrimitives, RefusesLabelsThatDoNotFit) {
   const auto mesh = shape_mesh(Box{{0.03, 0.02, 0.01}});
   EXPECT_THROW(fit_primitives(*mesh, {0, 0}), InvalidInput);
   EXPECT_THROW(fit_primitives(*mesh, std::vector<int>(mesh->triangles.size(), -1)), InvalidInput);
+  ScrewThread other;
+  other.faces = {12};
+  EXPECT_THROW(fit_primitives(*mesh, std::vector<int>(mesh->triangles.size(), 0), {other}), InvalidInput);
 }
 
 }  // namespace

@@ -388,7 +388,7 @@ def test_wrong_names_of_segments_are_told_at_their_line(
         ({"parts": [{"name": "a", "mesh": "no_such.stl"}]}, "no_such.stl"),
         ({"parts": [{"name": "a", "box": [1, 1, 1], "keep_off": [{"box": [1, 0, 1]}]}]}, "must be > 0"),
         ({"parts": [{"name": "a", "box": [1, 1, 1], "keep_off": [{"ball": 1}]}]}, "ball"),
-        ({"parts": [{"name": "a", "box": [1, 1, 1], "keep_off": [-1]}]}, "keep_off[0] = -1: must be at least 0"),
+        ({"parts": [{"name": "a", "box": [1, 1, 1], "keep_off": [-1]}]}, "keep_off[0] = -1: must be >= 0"),
         ({"parts": [{"name": "a", "box": [1, float("nan"), 1]}]}, "parts[0].box[1] = nan: must be finite"),
         ({"parts": [{"name": "a", "turned": [[1, 0], [float("nan"), 0], [1, 1]]}]}, "nan"),
         ({"actuators": [{"name": "a", "fingers": 3, "stroke": float("nan")}]}, "stroke = nan: must be finite"),

@@ -183,7 +183,9 @@ TEST(ShapeDiameter, MovesAndGrowsWithTheMesh) {
     // Turned, the rays are others of the same cones: where the ends are near they meet other things.
     for (std::size_t f = 0; f < before.size(); ++f) {
       const double z = centre(*mesh, f).z();
-      if (z > 0.015 && z < 0.045) EXPECT_NEAR(after[f] / scale, before[f], 0.01 * before[f]) << f;
+      if (z > 0.015 && z < 0.045) {
+        EXPECT_NEAR(after[f] / scale, before[f], 0.02 * before[f]) << f;  // as near as a wall's is to its closed form
+      }
     }
     for (std::size_t v = 0; v < moved.vertices.size(); ++v)
       moved.vertices[v] = scale * (mesh->vertices[v] + Eigen::Vector3d(0.3, -1.1, 0.7));

@@ -84,7 +84,9 @@ def summary(name: str, right: list[float], spent: list[float]) -> str:
     )
 
 
-print(summary("ours", shares, seconds) + f"; by the clock {np.median(clock):.2f} s (median), {max(clock):.2f} s at most")
+print(
+    summary("ours", shares, seconds) + f"; by the clock {np.median(clock):.2f} s (median), {max(clock):.2f} s at most"
+)
 if peer is not None:
     print(summary("CGAL", peer_shares, peer_seconds))
 print(f"load {os.getloadavg()[0]:.2f}")

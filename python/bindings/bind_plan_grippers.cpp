@@ -61,7 +61,8 @@ void bind_keep_off(py::module_& m) {
            "part"_a, py::kw_only(), "segments"_a = py::list(), "boxes"_a = py::list(), "names"_a = py::list(),
            "source"_a = "",
            "Name of the part; numbers of segments that segment_mesh gives it by default, or their names by "
-           "segment_names (\"cylinder_1\", \"pulley/cylinder_1\"); boxes in its mesh's frame: pairs of T_mesh_box (4, 4) "
+           "segment_names (\"cylinder_1\", \"pulley/cylinder_1\"); boxes in its mesh's frame: pairs of T_mesh_box (4, "
+           "4) "
            "of the middle, and size (3,) [m]; who asks for it, with which messages about it begin.")
       .def_readonly("part", &KeepOff::part, "The part's name.")
       .def_readonly("segments", &KeepOff::segments, "Numbers of segments.")
@@ -101,7 +102,8 @@ void bind_plan_result(py::module_& m) {
       .def_readonly("refused", &F::refused, "Why it cannot be held, or what most of its grasps fell by; '' when held.")
       .def_readonly("requirements", &F::requirements, "Numbers of the plan's requirements.")
       .def("__repr__", [](const F& f) {
-        return "SegmentFate(" + f.step + ", " + f.part + "/" + f.name + ": " + (f.refused.empty() ? "held" : f.refused) + ")";
+        return "SegmentFate(" + f.step + ", " + f.part + "/" + f.name + ": " +
+               (f.refused.empty() ? "held" : f.refused) + ")";
       });
   using R = PlanGrippersResult;
   py::class_<R>(m, "PlanGrippersResult", "The grippers of an assembly, and how they were come by.")

@@ -142,7 +142,8 @@ void bind_fitted_primitives(py::module_& m) {
       "that "
       "of\nthe segment's convex hull, of those with surface on them (P1, section 5.2.2). `labels` (m,): the segment of "
       "each face, as\nMeshSegmentation.labels. Inner walls are never offered for grasping, nor are sides of a box with "
-      "nothing on them. `threads`:\nthose of MeshSegmentation, which count as the cylinder through their crests. Raises InvalidInput when there is not one "
+      "nothing on them. `threads`:\nthose of MeshSegmentation, which count as the cylinder through their crests. "
+      "Raises InvalidInput when there is not one "
       "label\n>= 0 a face, or for threads of other meshes.");
   m.def(
       "segment_names",

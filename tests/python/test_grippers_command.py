@@ -138,7 +138,10 @@ def test_what_would_help_is_a_longer_finger_or_another_stroke(
     assert "sleeve/cylinder_1: " in short
     said(0, actuators=[chuck], fingers={"longest": float(found[1])})
     narrow = said(3, actuators=[{**chuck, "max_opening": 16}])
-    found = re.search(r"would help: sleeve: a drive with 3 fingers, a stroke of ([\d.]+) mm and an opening of up to ([\d.]+) mm", narrow)
+    found = re.search(
+        r"would help: sleeve: a drive with 3 fingers, a stroke of ([\d.]+) mm and an opening of up to ([\d.]+) mm",
+        narrow,
+    )
     assert found and "wider than any actuator opens" in narrow
     said(0, actuators=[{**chuck, "stroke": float(found[1]), "max_opening": float(found[2])}])
 
@@ -351,7 +354,10 @@ def test_a_segment_by_name_moves_the_grasp_to_other_faces(tang_file: Callable[..
     ("name", "message"),
     [
         ("cylinder_3", "= cylinder_3: must be the name of one of its segments, cylinder_1, box_1; did you mean"),
-        ("cilinder_1", "= 'cilinder_1': must be the name of a segment as `mmgrasp segment` gives it; did you mean cylinder_1?"),
+        (
+            "cilinder_1",
+            "= 'cilinder_1': must be the name of a segment as `mmgrasp segment` gives it; did you mean cylinder_1?",
+        ),
         ("plate/box_1", "= 'plate/box_1': must be the name of a segment"),
         ("box_0", "= 'box_0': must be the name of a segment as `mmgrasp segment` gives it; did you mean box_1?"),
     ],

@@ -137,4 +137,6 @@ def test_the_lines_of_two_clicks_are_read_as_keep_off(plan: GripperPlan, tmp_pat
     file = tmp_path / "assembly.yaml"
     file.write_text(yaml.safe_dump(content))
     read = load_assembly(file)
-    assert {name: [n for k in part.keep_off for n in k.names] for name, part in read.parts.items() if part.keep_off} == chosen
+    assert {
+        name: [n for k in part.keep_off for n in k.names] for name, part in read.parts.items() if part.keep_off
+    } == chosen

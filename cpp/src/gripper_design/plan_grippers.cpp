@@ -290,7 +290,8 @@ class Planning {
   void keep(std::vector<FreeGrasp> found, SegmentFate& fate) {
     for (FreeGrasp& f : found) {
       fate.requirements.push_back(static_cast<int>(result_.requirements.size()));
-      result_.requirements.push_back({fate.step, fate.part + "/" + fate.name, fate.fingers, 1e-6 * std::round(1e6 * f.grasp.opening), f.lengths.shortest, f.lengths.longest});
+      result_.requirements.push_back({fate.step, fate.part + "/" + fate.name, fate.fingers,
+                                      1e-6 * std::round(1e6 * f.grasp.opening), f.lengths.shortest, f.lengths.longest});
       result_.grasps.push_back(std::move(f.grasp));
       if (options_.holding) result_.holdings.push_back(f.held);
       ranks_.push_back(f.rank);

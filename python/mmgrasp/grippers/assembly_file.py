@@ -209,7 +209,9 @@ def _read_part(node: Node, scale: float, unit: str) -> AssemblyPart:
             f"has {len(mesh.triangles):,} triangles: parts of up to {MOST_TRIANGLES:,} can be planned for; "
             "export it coarser (0.01 mm off is nothing to a finger)"
         )
-    keep_off = [_read_keep_off(name, element, scale) for element in node["keep_off"].elements()] if "keep_off" in node else []
+    keep_off = (
+        [_read_keep_off(name, element, scale) for element in node["keep_off"].elements()] if "keep_off" in node else []
+    )
     pose = _pose(node["pose"], scale) if "pose" in node else np.eye(4)
     inside_out = bool(source) and _core._file_is_inside_out(source)
     return AssemblyPart(name, mesh, pose, keep_off, source, inside_out)

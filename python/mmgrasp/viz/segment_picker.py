@@ -49,9 +49,7 @@ def picker_data(plan: GripperPlan) -> list[dict[str, Any]]:
                 "triangles": _packed(np.asarray(part.mesh.triangles), "<u4"),
                 "labels": _packed(np.asarray(segmentation.labels), "<u4"),
                 "colours": [segment_colour(i) for i in range(len(segmentation.segments))],
-                "segments": [
-                    ", a screw thread" if segment.threaded else "" for segment in segmentation.segments
-                ],
+                "segments": [", a screw thread" if segment.threaded else "" for segment in segmentation.segments],
                 "names": names,
                 "keep_off": [
                     *(number for k in part.keep_off for number in k.segments),

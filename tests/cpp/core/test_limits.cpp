@@ -35,6 +35,5 @@ TEST(Limits, ARefusedCountNamesFieldValueAndRule) {
   }
 }
 
-
 }  // namespace
 }  // namespace mmgrasp

@@ -158,7 +158,8 @@ class Bolt {
     t.push_back({tip, 0, crest(0)});
     t.push_back({tip, crest(0), kSides});
     const int rings = static_cast<int>(v.size());
-    const std::vector<std::pair<double, double>> above{{kCrest, kPlain}, {kCrest, 0.022}, {kHead, 0.022}, {kHead, 0.03}};
+    const std::vector<std::pair<double, double>> above{
+        {kCrest, kPlain}, {kCrest, 0.022}, {kHead, 0.022}, {kHead, 0.03}};
     for (const auto& [r, z] : above)
       for (int s = 0; s < kSides; ++s) v.push_back(at(r, 1.0 * s / kSides, z));
     const auto ring = [&](int row, int s) { return rings + row * kSides + s % kSides; };

@@ -64,10 +64,10 @@ std::vector<int> find_regions(const FaceGraph& graph, const std::vector<int>& cl
   }
   std::vector<int> labels = detail::connected_regions(graph, seed, passable, narrowest * narrowest);
   detail::grow_regions(graph, outer, labels);
-  const int count = detail::join_regions(graph, narrowest, options.convexity, labels);
+  const int count = detail::join_regions(graph, outer, narrowest, options.convexity, labels);
   detail::label_inner_walls(graph, walls, count, labels);
   detail::dissolve_islands(graph, narrowest * narrowest, labels);
-  detail::join_regions(graph, narrowest, options.convexity, labels);
+  detail::join_regions(graph, outer, narrowest, options.convexity, labels);
   return labels;
 }
 

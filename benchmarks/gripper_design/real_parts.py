@@ -79,7 +79,7 @@ def main() -> None:
         mesh = mg.Mesh.load(file, [unit] * 3)
         begin = time.process_time()
         found = segment_mesh(mesh)
-        primitives = fit_primitives(mesh, found.labels)
+        primitives = fit_primitives(mesh, found.labels, threads=found.threads)
         lines += lines_of(file.stem, mesh, found, primitives, time.process_time() - begin)
         print("\n".join(lines[-len(primitives) :]), flush=True)
         bodies = coloured(

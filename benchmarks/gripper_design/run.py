@@ -1,4 +1,5 @@
-"""Segments of 50 composed parts against the primitives they were made of: share of faces right, and seconds of processor time for the call alone.
+"""Segments of 50 composed parts against the primitives they were made of: share of faces right, and seconds for the call alone: processor time, and the
+clock's, which the machine's load (stated) adds to.
 
     python benchmarks/gripper_design/run.py [--parts 50] [--triangles 0]
 
@@ -10,6 +11,7 @@ from __future__ import annotations
 
 import argparse
 import importlib
+import os
 import sys
 import tempfile
 import time
@@ -45,15 +47,18 @@ parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.R
 parser.add_argument("--parts", type=int, default=50, help="how many (default 50)")
 parser.add_argument("--triangles", type=int, default=0, help=f"of each mesh, about (0: edges of {EDGE:g} mm)")
 arguments = parser.parse_args()
-shares, seconds, peer = [], [], cgal()
+shares, seconds, clock, peer = [], [], [], cgal()
+peer_shares, peer_seconds = [], []
+print(f"load {os.getloadavg()[0]:.2f} on {os.cpu_count()} cores", flush=True)
 with tempfile.TemporaryDirectory() as folder:
     for k, (part, noise) in enumerate(composed_parts(arguments.parts)):
         edge = edge_for(part, arguments.triangles) if arguments.triangles else EDGE
         vertices, triangles, truth = part.mesh(edge, noise, k)
         mesh = as_mesh(vertices, triangles, Path(folder) / "part.ply")
-        begin = time.process_time()
+        begin, began = time.process_time(), time.perf_counter()
         found = mg.grasping.segment_mesh(mesh)
         seconds.append(time.process_time() - begin)
+        clock.append(time.perf_counter() - began)
         shares.append(faces_right(truth, found.labels))
         beside = ""
         if peer is not None:
@@ -62,11 +67,26 @@ with tempfile.TemporaryDirectory() as folder:
             begin = time.process_time()
             labels = np.asarray(surface.segmentation()[1], dtype=int)
             spent = time.process_time() - begin
-            beside = f"  CGAL {100 * faces_right(truth, labels):6.1f} % right {spent:6.2f} s"
+            peer_shares.append(faces_right(truth, labels))
+            peer_seconds.append(spent)
+            beside = f"  CGAL {100 * peer_shares[-1]:6.1f} % right {spent:6.2f} s"
         print(
-            f"{k:3} {part.name:32} noise {noise:.2f} mm  {len(truth):6} faces  {100 * shares[-1]:6.1f} % right {seconds[-1]:6.2f} s{beside}",
+            f"{k:3} {part.name:32} noise {noise:.2f} mm  {len(truth):6} faces  {100 * shares[-1]:6.1f} % right {seconds[-1]:6.2f} s, {clock[-1]:.2f} s by the clock{beside}",
             flush=True,
         )
+
+
+def summary(name: str, right: list[float], spent: list[float]) -> str:
+    """What became of all parts."""
+    return (
+        f"{name}: mean {100 * np.mean(right):.1f} %, {sum(s < 0.95 for s in right)} of {len(right)} below 95 %; "
+        f"{np.median(spent):.2f} s of processor time (median), {max(spent):.2f} s at most"
+    )
+
+
 print(
-    f"mean {100 * np.mean(shares):.1f} %, {sum(s < 0.95 for s in shares)} of {len(shares)} below 95 %; {max(seconds):.2f} s of processor time at most"
+    summary("ours", shares, seconds) + f"; by the clock {np.median(clock):.2f} s (median), {max(clock):.2f} s at most"
 )
+if peer is not None:
+    print(summary("CGAL", peer_shares, peer_seconds))
+print(f"load {os.getloadavg()[0]:.2f}")

@@ -53,14 +53,21 @@ void bind_keep_off(py::module_& m) {
                       "The surface of a part that no finger may touch.\n\n"
                       "    KeepOff(\"pulley\", segments=[2], boxes=[(mg.pose([0, 0, 0.02]), [0.07, 0.07, 0.004])])")
       .def(py::init([](const Given<std::string>& part, const Given<std::vector<int>>& segments,
-                       const Shown<kBoxes>& boxes) {
-             return KeepOff{taken(part, "part"), taken(segments, "segments", "whole numbers"), boxes_argument(boxes)};
+                       const Shown<kBoxes>& boxes, const Given<std::vector<std::string>>& names,
+                       const Given<std::string>& source) {
+             return KeepOff{taken(part, "part"), taken(segments, "segments", "whole numbers"), boxes_argument(boxes),
+                            taken(names, "names", "texts"), taken(source, "source")};
            }),
-           "part"_a, py::kw_only(), "segments"_a = py::list(), "boxes"_a = py::list(),
-           "Name of the part, numbers of segments that segment_mesh gives it by default, and boxes in its mesh's "
-           "frame: pairs of T_mesh_box (4, 4) of the middle, and size (3,) [m].")
+           "part"_a, py::kw_only(), "segments"_a = py::list(), "boxes"_a = py::list(), "names"_a = py::list(),
+           "source"_a = "",
+           "Name of the part; numbers of segments that segment_mesh gives it by default, or their names by "
+           "segment_names (\"cylinder_1\", \"pulley/cylinder_1\"); boxes in its mesh's frame: pairs of T_mesh_box (4, "
+           "4) "
+           "of the middle, and size (3,) [m]; who asks for it, with which messages about it begin.")
       .def_readonly("part", &KeepOff::part, "The part's name.")
       .def_readonly("segments", &KeepOff::segments, "Numbers of segments.")
+      .def_readonly("names", &KeepOff::names, "Names of segments.")
+      .def_readonly("source", &KeepOff::source, "Who asks for it.")
       .def_property_readonly(
           "boxes",
           [](const KeepOff& k) {
@@ -70,7 +77,7 @@ void bind_keep_off(py::module_& m) {
           },
           "Pairs of T_mesh_box (4, 4) and size (3,) [m].")
       .def("__repr__", [](const KeepOff& k) {
-        return "KeepOff(" + k.part + ", " + std::to_string(k.segments.size()) + " segments, " +
+        return "KeepOff(" + k.part + ", " + std::to_string(k.segments.size() + k.names.size()) + " segments, " +
                std::to_string(k.boxes.size()) + " boxes)";
       });
 }
@@ -87,6 +94,7 @@ void bind_plan_result(py::module_& m) {
       .def_readonly("step", &F::step, "The operation's name.")
       .def_readonly("part", &F::part, "The part's name.")
       .def_readonly("segment", &F::segment, "Its number.")
+      .def_readonly("name", &F::name, "Its name, as segment_names gives it: cylinder_1.")
       .def_readonly("kind", &F::kind, "Its primitive: cylinder, box, cone or sphere.")
       .def_readonly("fingers", &F::fingers, "2, 3, or 0: no gripper suits its primitive.")
       .def_readonly("tried", &F::tried, "Grasps of it.")
@@ -94,7 +102,7 @@ void bind_plan_result(py::module_& m) {
       .def_readonly("refused", &F::refused, "Why it cannot be held, or what most of its grasps fell by; '' when held.")
       .def_readonly("requirements", &F::requirements, "Numbers of the plan's requirements.")
       .def("__repr__", [](const F& f) {
-        return "SegmentFate(" + f.step + ", " + f.part + ", segment " + std::to_string(f.segment) + ": " +
+        return "SegmentFate(" + f.step + ", " + f.part + "/" + f.name + ": " +
                (f.refused.empty() ? "held" : f.refused) + ")";
       });
   using R = PlanGrippersResult;

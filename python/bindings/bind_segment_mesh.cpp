@@ -2,6 +2,7 @@
 #include <sstream>
 
 #include "bindings.hpp"
+#include "given.hpp"
 #include "mmgrasp/geometry/detail/inside_out.hpp"
 #include "mmgrasp/geometry/fit_primitives.hpp"
 #include "mmgrasp/geometry/segment_mesh.hpp"
@@ -119,7 +120,8 @@ void bind_fitted_primitives(py::module_& m) {
       });
   m.def(
       "fit_primitives",
-      [](const MeshShape& mesh, const ArrayLike& labels, const Progress& progress) {
+      [](const MeshShape& mesh, const ArrayLike& labels, const Given<std::vector<ScrewThread>>& threads,
+         const Progress& progress) {
         const Eigen::VectorXd values = vector_argument(labels, "labels");
         const std::size_t faces = mesh.mesh->triangles.size();
         if (static_cast<std::size_t>(values.size()) != faces)
@@ -131,15 +133,26 @@ void bind_fitted_primitives(py::module_& m) {
             require(false, "labels[" + std::to_string(i) + "]", values[i], "must be a whole number");
           numbers.push_back(static_cast<int>(values[i]));
         }
+        const auto smoothed = taken(threads, "threads", "ScrewThread");
         LongCall call(progress);
-        return call.run([&](const Monitor& monitor) { return fit_primitives(*mesh.mesh, numbers, monitor); });
+        return call.run([&](const Monitor& monitor) { return fit_primitives(*mesh.mesh, numbers, smoothed, monitor); });
       },
-      "mesh"_a, "labels"_a, py::kw_only(), "progress"_a = py::none(),
+      "mesh"_a, "labels"_a, py::kw_only(), "threads"_a = py::list(), "progress"_a = py::none(),
       "The cylinder, box, cone or sphere that stands for each segment of a mesh: the one whose volume is closest to "
       "that "
       "of\nthe segment's convex hull, of those with surface on them (P1, section 5.2.2). `labels` (m,): the segment of "
       "each face, as\nMeshSegmentation.labels. Inner walls are never offered for grasping, nor are sides of a box with "
-      "nothing on them. Raises\nInvalidInput when there is not one label >= 0 a face.");
+      "nothing on them. `threads`:\nthose of MeshSegmentation, which count as the cylinder through their crests. "
+      "Raises InvalidInput when there is not one "
+      "label\n>= 0 a face, or for threads of other meshes.");
+  m.def(
+      "segment_names",
+      [](const Given<std::vector<F>>& primitives) {
+        return segment_names(taken(primitives, "primitives", "FittedPrimitive"));
+      },
+      "primitives"_a,
+      "A name for each segment of a part by its primitive: the kind and the place among those of the kind, from 1, in "
+      "the order of the segments, largest area first: cylinder_1, box_1, cylinder_2.");
 }
 
 }  // namespace

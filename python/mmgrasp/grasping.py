@@ -100,6 +100,7 @@ from ._core import (
     ScrewThread as ScrewThread,
     shape_diameters as shape_diameters,
     fit_primitives as fit_primitives,
+    segment_names as segment_names,
     FittedPrimitive as FittedPrimitive,
     GraspWidth as GraspWidth,
 )

@@ -27,7 +27,7 @@ CHEAP = {
         verify.PlanToCheck verify.Fault
         """,
     "a text or arrays are made of a result": """
-        write_plan
+        write_plan segment_names
         BaseRegion.cells BaseRegion.part_cells RobotMotion.to_csv RobotMotion.to_joint_trajectory JointTrajectory.to_joint_trajectory
         ObjectRegions.base_region ObjectRegions.parts ObjectRegions.region GraspSynthesis.summary GraspOptimum.sag_candidates
         Robot.to_srdf Robot.to_urdf Gripper.to_urdf Gripper.finger_mesh Gripper.hand Hand.shapes Pipe.shapes FittedCuboid.shape

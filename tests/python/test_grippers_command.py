@@ -22,6 +22,7 @@ from mmgrasp.grippers.planning import GripperPlan, operation_of
 from mmgrasp.grippers.turned_parts import block, turned
 from mmgrasp.viz.gripper_report import gripper_report_html
 from test_segment_command import write_stl
+from test_segment_mesh import as_mesh
 
 pytestmark = pytest.mark.slow
 
@@ -119,6 +120,32 @@ def test_what_cannot_be_held_says_why(tmp_path: Path, capsys: pytest.CaptureFixt
     assert "would help: sleeve: a drive with 3 fingers" in printed
 
 
+def test_what_would_help_is_a_longer_finger_or_another_stroke(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """And with what is said to help it is held. Exit code 4: grasps were tried and none goes through; 3: there is none to try."""
+    order = [{"part": "sleeve", "onto": ["base", "shaft"], "from": {"xyz": [0, 0, 80]}}]
+    chuck = {"name": "chuck", "fingers": 3, "stroke": 16}
+
+    def said(code: int, **changes: Any) -> str:
+        file = changed(tmp_path, order=order, **changes)
+        assert main(["grippers", str(file), "-o", str(tmp_path / "out"), "--no-pictures"]) == code
+        return capsys.readouterr().out
+
+    short = said(4, actuators=[chuck], fingers={"longest": 30})
+    found = re.search(r"would help: sleeve: fingers of ([\d.]+) mm would do", short)
+    assert found and 44 <= float(found[1]) < 60  # the shaft stands 24 mm out of the sleeve, whose tips lie below
+    assert "sleeve/cylinder_1: " in short
+    said(0, actuators=[chuck], fingers={"longest": float(found[1])})
+    narrow = said(3, actuators=[{**chuck, "max_opening": 16}])
+    found = re.search(
+        r"would help: sleeve: a drive with 3 fingers, a stroke of ([\d.]+) mm and an opening of up to ([\d.]+) mm",
+        narrow,
+    )
+    assert found and "wider than any actuator opens" in narrow
+    said(0, actuators=[{**chuck, "stroke": float(found[1]), "max_opening": float(found[2])}])
+
+
 def test_parts_that_stand_in_each_other_are_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """From below, through the base; and an end 3 mm too low, which a larger max_overlap lets pass."""
     below = changed(tmp_path, order=[{"part": "shaft", "onto": ["base"], "from": {"xyz": [0, 0, -80]}}])
@@ -173,7 +200,9 @@ def block_file(tmp_path: Path) -> Callable[..., Path]:
     return write
 
 
-def test_meshes_inside_out_are_turned_and_told(block_file: Callable[..., Path]) -> None:
+def test_meshes_inside_out_are_turned_and_told(
+    tmp_path: Path, block_file: Callable[..., Path], capsys: pytest.CaptureFixture[str]
+) -> None:
     """Closed or open, the block gets the gripper that it gets from a file without fault."""
     right = plan_grippers(load_assembly(block_file(scale=1000)))
     assert right.solved and right.notes == [] and right.result is not None
@@ -182,6 +211,11 @@ def test_meshes_inside_out_are_turned_and_told(block_file: Callable[..., Path]) 
     opened = plan_grippers(load_assembly(block_file(scale=1000, turn=True, drop=1)))
     assert opened.solved and len(opened.notes) == 2 and "the mesh is open" in opened.notes[0]
     assert "inside out" in opened.notes[1]
+    command = ["grippers", str(block_file(scale=1000, turn=True, drop=1)), "-o", str(tmp_path / "out"), "--no-pictures"]
+    assert main(command) == 0
+    printed = " ".join(capsys.readouterr().out.split())
+    assert "note: block: the mesh is open" in printed
+    assert "note: block: the mesh was inside out: its faces were turned" in printed
     for plan in (closed, opened):
         assert plan.result is not None
         assert [g.to_dict() for g in plan.result.grippers] == [g.to_dict() for g in right.result.grippers]
@@ -227,8 +261,116 @@ def test_boxes_keep_fingers_off_a_part_of_a_segment(tmp_path: Path) -> None:
     assert kept.solved
     assert 1.5 <= min(depths(kept)) + 1e-6 and max(depths(kept)) < 2.5
     shaft["keep_off"] = [99]
-    with pytest.raises(mg.InvalidInput, match=r"keep_off of part 'shaft' = 99: must be the number of one of its \d+ "):
+    with pytest.raises(
+        mg.InvalidInput,
+        match=r"assembly.yaml:\d+: parts\[\d\].keep_off\[0\]: keep_off of part 'shaft' = 99: must be the number of one of its \d+ ",
+    ):
         plan_grippers(load_assembly(changed(tmp_path, order=order, parts=parts)))
+
+
+@pytest.fixture
+def tang_file(tmp_path: Path) -> Callable[..., Path]:
+    """An assembly of a cylinder of 40 mm with a tang of 24 x 14 mm on it; `keep_off` is the part's."""
+    m3 = pytest.importorskip("manifold3d")
+    solid = m3.Manifold.cylinder(30, 20, 20, 96) + m3.Manifold.cube((24, 14, 20), True).translate((0, 0, 40))
+    mesh = solid.to_mesh()
+    as_mesh(np.asarray(mesh.vert_properties)[:, :3], np.asarray(mesh.tri_verts), tmp_path / "tang.ply")
+
+    def write(*keep_off: Any) -> Path:
+        content = {
+            "format": "mmgrasp-assembly",
+            "version": 1,
+            "name": "a tang",
+            "unit": "mm",
+            "parts": [
+                {"name": "plate", "box": [120, 120, 10], "pose": {"xyz": [0, 0, -5]}},
+                {"name": "tang", "mesh": "tang.ply", "keep_off": list(keep_off)},
+            ],
+            "order": [{"part": "tang", "onto": ["plate"], "from": {"xyz": [0, 0, 80]}}],
+            "actuators": [
+                {"name": "jaws", "fingers": 2, "stroke": 48},
+                {"name": "chuck", "fingers": 3, "stroke": 16},
+            ],
+        }
+        file = tmp_path / "tang.yaml"
+        file.write_text(yaml.safe_dump(content))
+        return file
+
+    return write
+
+
+def touched(plan: GripperPlan) -> set[str]:
+    """What the pads of the chosen gripper lie on, by points drawn on the part: its round wall, its flats, or anything else."""
+    assert plan.result is not None
+    grasp = plan.grasps[plan.result.requirement_of_part[0]]
+    gripper = plan.result.grippers[plan.result.gripper_of_part[0]]
+    mesh = plan.assembly.parts["tang"].mesh
+    corners = np.asarray(mesh.vertices)[np.asarray(mesh.triangles)]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    areas = np.linalg.norm(normals, axis=1)
+    rng = np.random.default_rng(1)
+    which = rng.choice(len(areas), 400_000, p=areas / areas.sum())
+    weights = rng.dirichlet([1, 1, 1], len(which))
+    points = np.einsum("ij,ijk->ik", weights, corners[which])
+    tool = np.linalg.inv(grasp.T_active_tool)
+    local = points @ tool[:3, :3].T + tool[:3, 3]  # z along the approach, tips in z = 0
+    facing = (normals[which] / areas[which, None]) @ tool[:3, :3].T
+    out: set[str] = set()
+    for k in range(gripper.fingers):
+        angle = 2 * np.pi * k / gripper.fingers
+        away = local[:, 0] * np.cos(angle) + local[:, 1] * np.sin(angle) - grasp.opening / 2
+        aside = local[:, 1] * np.cos(angle) - local[:, 0] * np.sin(angle)
+        on = (np.abs(away) < 5e-5) & (np.abs(aside) < gripper.finger_width / 2)
+        on &= facing[:, 0] * np.cos(angle) + facing[:, 1] * np.sin(angle) > 0.99
+        on &= (local[:, 2] < 0) & (local[:, 2] > -gripper.finger_length)
+        assert on.sum() > 20
+        for x, y, _ in points[on]:
+            flat = min(abs(abs(y) - 0.007), abs(abs(x) - 0.012)) < 1e-6
+            out.add("flats" if flat else "wall" if abs(np.hypot(x, y) - 0.02) < 1e-4 else "other")
+    return out
+
+
+def test_a_segment_by_name_moves_the_grasp_to_other_faces(tang_file: Callable[..., Path]) -> None:
+    free = plan_grippers(load_assembly(tang_file()))
+    assert free.segment_names == {"tang": ["cylinder_1", "box_1"]}
+    assert free.solved and touched(free) in ({"wall"}, {"flats"})
+    for name, left in (("cylinder_1", {"flats"}), ("box_1", {"wall"}), ("tang/box_1", {"wall"})):
+        plan = plan_grippers(load_assembly(tang_file(name)))
+        assert plan.solved and touched(plan) == left
+        fate = next(f for f in plan.fates if f.refused == "not to be touched")
+        assert fate.name == name.removeprefix("tang/")
+        assert f"<td>{fate.name}</td>" in gripper_report_html(plan, None)
+        assert {s["name"]: s["refused"] for s in result_to_dict(plan)["segments"]}[fate.name] == "not to be touched"
+        assert {r.segment for r in plan.requirements} == {
+            f"tang/{other}" for other in ("cylinder_1", "box_1") if other != fate.name
+        }
+    both = plan_grippers(load_assembly(tang_file("cylinder_1", "box_1")))
+    assert not both.solved and both.missing == [
+        "tang: no segment can be held; tang/cylinder_1: not to be touched; tang/box_1: not to be touched"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("cylinder_3", "= cylinder_3: must be the name of one of its segments, cylinder_1, box_1; did you mean"),
+        (
+            "cilinder_1",
+            "= 'cilinder_1': must be the name of a segment as `mmgrasp segment` gives it; did you mean cylinder_1?",
+        ),
+        ("plate/box_1", "= 'plate/box_1': must be the name of a segment"),
+        ("box_0", "= 'box_0': must be the name of a segment as `mmgrasp segment` gives it; did you mean box_1?"),
+    ],
+)
+def test_wrong_names_of_segments_are_told_at_their_line(
+    tmp_path: Path, tang_file: Callable[..., Path], capsys: pytest.CaptureFixture[str], name: str, message: str
+) -> None:
+    file = tang_file("box_1", name)
+    assert main(["grippers", str(file), "-o", str(tmp_path / "out")]) == 2
+    error = " ".join(capsys.readouterr().err.split())
+    line = next(i for i, text in enumerate(file.read_text().splitlines(), 1) if name in text)
+    assert f"{file}:{line}: parts[1].keep_off[1]" in error and message in error
+    assert not (tmp_path / "out" / "result.json").exists()
 
 
 @pytest.mark.parametrize(
@@ -252,6 +394,11 @@ def test_boxes_keep_fingers_off_a_part_of_a_segment(tmp_path: Path) -> None:
         ({"parts": [{"name": "a", "mesh": "no_such.stl"}]}, "no_such.stl"),
         ({"parts": [{"name": "a", "box": [1, 1, 1], "keep_off": [{"box": [1, 0, 1]}]}]}, "must be > 0"),
         ({"parts": [{"name": "a", "box": [1, 1, 1], "keep_off": [{"ball": 1}]}]}, "ball"),
+        ({"parts": [{"name": "a", "box": [1, 1, 1], "keep_off": [-1]}]}, "keep_off[0] = -1: must be >= 0"),
+        ({"parts": [{"name": "a", "box": [1, float("nan"), 1]}]}, "parts[0].box[1] = nan: must be finite"),
+        ({"parts": [{"name": "a", "turned": [[1, 0], [float("nan"), 0], [1, 1]]}]}, "nan"),
+        ({"actuators": [{"name": "a", "fingers": 3, "stroke": float("nan")}]}, "stroke = nan: must be finite"),
+        ({"order": [{"part": "shaft", "from": {"xyz": [0, float("inf"), 0]}}]}, "= inf: must be finite"),
         ({"options": {"max_overlap": -1}}, "max_overlap = -1"),
         ({"version": 9}, "version"),
         ({"format": "mmgrasp-scenario"}, "mmgrasp-assembly"),

@@ -10,6 +10,8 @@ import pytest
 
 import mmgrasp as mg
 from mmgrasp.cli import main
+from mmgrasp.viz.legend import legend
+from mmgrasp.viz.style import rgb
 
 
 def write_stl(path: Path, scale: float = 1.0, drop: int = 0, turn: bool = False) -> Path:
@@ -32,18 +34,32 @@ def test_segments_of_a_box(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -
     written = json.loads((tmp_path / "out" / "segments.json").read_text())
     assert printed == written
     (segment,) = written["segments"]
-    assert segment["primitive"] == "box"
+    assert segment["primitive"] == "box" and segment["name"] == "box_1"
     assert sorted(w["width"] for w in segment["widths"]) == pytest.approx([0.01, 0.02, 0.03], abs=1e-8)
     assert segment["segment"] == 0 and written["labels"] == [0] * 12 and written["notes"] == []
     for picture in ("segments.png", "diameters.png"):
         assert (tmp_path / "out" / picture).read_bytes().startswith(b"\x89PNG")
 
 
+def test_names_stand_below_the_picture() -> None:
+    """A swatch of each colour and ink beside it; a strip too narrow for all names has more rows."""
+    entries = [("cylinder_1", "#0072B2"), ("box_1", "#E69F00"), ("cylinder_2", "#009E73")]
+    wide, narrow = legend(entries, 600), legend(entries, 160)
+    assert wide.shape == (wide.shape[0], 600, 3) and narrow.shape[0] == 3 * wide.shape[0]
+    for strip in (wide, narrow):
+        swatches = [(strip == np.round(255 * np.array(rgb(colour)))).all(axis=2) for _, colour in entries]
+        assert {int(s.sum()) for s in swatches} == {15 * 15}
+        for swatch in swatches:
+            rows, columns = np.nonzero(swatch)
+            beside = strip[rows.min() : rows.max() + 1, columns.max() + 1 : columns.max() + 60]
+            assert (beside < 100).any()
+
+
 @pytest.mark.slow
 def test_table_names_widths(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["segment", str(write_stl(tmp_path / "part.stl"))]) == 0
     out = capsys.readouterr().out
-    assert "box" in out and "20.00 (100" in out
+    assert "box_1" in out and "20.00 (100" in out
 
 
 @pytest.mark.slow

@@ -70,6 +70,16 @@ def test_faces_and_widths_of_composed_parts(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
+def test_a_bore_joins_no_bodies_that_it_passes(tmp_path: Path) -> None:
+    """With edges of 0.7 mm some of the bore's wall goes to the next body but one, whose hull then reached through the body between."""
+    part, noise = composed_parts(2)[1]
+    vertices, triangles, truth = part.mesh(0.7, noise, 1)
+    found = mg.grasping.segment_mesh(as_mesh(vertices, triangles, tmp_path / "part.ply"))
+    assert len(found.segments) == 4
+    assert faces_right(truth, found.labels) >= 0.95
+
+
+@pytest.mark.slow
 def test_inward_edges_around_an_axis_through_themselves_end(tmp_path: Path) -> None:
     """Some of this noisy pulley's edges, taken for a thread, lie on that thread's axis: its pitch was sought without end."""
     part, noise = composed_parts(29)[28]

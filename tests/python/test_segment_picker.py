@@ -32,7 +32,7 @@ VIEWS = [
 @pytest.fixture(scope="module")
 def plan() -> GripperPlan:
     assembly = load_assembly("pulley")
-    assembly.parts["pulley"].keep_off = [1]
+    assembly.parts["pulley"].keep_off = [mg.gripper_design.KeepOff("pulley", segments=[1])]
     return plan_grippers(replace(assembly, steps=assembly.steps[:4]))
 
 
@@ -65,6 +65,7 @@ def test_the_page_holds_each_part_and_needs_no_network(plan: GripperPlan) -> Non
         assert (array(part["triangles"], "<u4").reshape(-1, 3) == np.asarray(mesh.triangles)).all()
         labels = plan.segmentations[part["name"]].labels
         assert (array(part["labels"], "<u4") == np.asarray(labels)).all()
+        assert part["names"] == plan.segment_names[part["name"]]
         assert len(part["colours"]) == len(part["segments"]) == len(plan.segmentations[part["name"]].segments)
     assert [part["keep_off"] for part in parts if part["name"] == "pulley"] == [[1]]
     assert SCRIPT.read_text() in page
@@ -128,11 +129,14 @@ def test_the_lines_of_two_clicks_are_read_as_keep_off(plan: GripperPlan, tmp_pat
         p.toggle(pulley, 0); p.toggle(shaft, 1); p.toggle(shaft, 0); p.toggle(shaft, 1);
         console.log(p.yamlLines(parts));"""
     chosen = {part["name"]: part["keep_off"] for part in yaml.safe_load("parts:\n" + node(script))["parts"]}
-    assert chosen == {"pulley": [0, 1], "shaft": [0]}
+    names = plan.segment_names
+    assert chosen == {"pulley": names["pulley"][:2], "shaft": names["shaft"][:1]}
     content = yaml.safe_load(shipped_assembly("pulley").read_text())
     for part in content["parts"]:
         part.update({"keep_off": chosen[part["name"]]} if part["name"] in chosen else {})
     file = tmp_path / "assembly.yaml"
     file.write_text(yaml.safe_dump(content))
     read = load_assembly(file)
-    assert {name: part.keep_off for name, part in read.parts.items() if part.keep_off} == chosen
+    assert {
+        name: [n for k in part.keep_off for n in k.names] for name, part in read.parts.items() if part.keep_off
+    } == chosen

@@ -8,6 +8,7 @@
 
 #include "gripper_design/gripper_candidates.hpp"
 #include "gripper_design/segment_judgement.hpp"
+#include "mmgrasp/core/detail/near_name.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/core/parallel.hpp"
@@ -54,6 +55,29 @@ void check_operations(const std::vector<AssemblyOperation>& operations) {
           throw InvalidInput("operation '" + o.name + "': part '" + part.name + "' cannot be moved and stay");
     }
   }
+}
+
+/// What is wrong with surface to keep off is told with who asked for it.
+template <typename Work>
+void told_with_source(const KeepOff& k, const Work& work) {
+  try {
+    work();
+  } catch (const InvalidInput& e) {
+    if (k.source.empty()) throw;
+    throw InvalidInput(k.source + ": " + e.what());
+  }
+}
+
+/// The number of a part's segment by its name, which may have the part's before it.
+int segment_called(const std::string& name, const std::string& part, const std::vector<std::string>& names) {
+  const bool full = name.compare(0, part.size() + 1, part + "/") == 0;
+  const std::string own = full ? name.substr(part.size() + 1) : name;
+  const auto at = std::find(names.begin(), names.end(), own);
+  std::string all;
+  for (const std::string& n : names) all += (all.empty() ? "" : ", ") + n;
+  require(at != names.end(), "keep_off of part '" + part + "'", name,
+          "must be the name of one of its segments, " + all + near_miss(own, names));
+  return static_cast<int>(at - names.begin());
 }
 
 MinimalGrippersOptions set_options(const PlanGrippersOptions& options) {
@@ -159,37 +183,46 @@ class Planning {
       segmentation.diameter.threads = options_.threads;
       out.segmentation = segment_mesh(*moved[i]->mesh, segmentation, silent);
       out.segmentation.turned = outward_.turned(moved[i]->mesh.get());
-      if (!monitor_.stopped()) out.primitives = fit_primitives(*moved[i]->mesh, out.segmentation.labels, silent);
+      if (monitor_.stopped()) return;
+      const MeshSegmentation& cut = out.segmentation;
+      out.primitives = fit_primitives(*moved[i]->mesh, cut.labels, cut.threads, silent);
     }
   }
 
   /// Before any work: parts that are known, boxes with surface in them.
   void find_boxes(const std::vector<KeepOff>& keep_off) {
-    for (const KeepOff& k : keep_off) {
-      const TriangleMesh* mesh = mesh_of(k.part);
-      if (mesh == nullptr) require_known(k.part);
-      for (const KeepOffBox& box : k.boxes) {
-        box.check();
-        if (mesh == nullptr) continue;  // It stays: no finger takes it.
-        const SurfacePieces in_box = surface_in_box(*mesh, box);
-        if (in_box.empty())
-          throw InvalidInput("keep_off of part '" + k.part + "': a box has nothing of its surface in it");
-        add_pieces(k.part, in_box);
-      }
+    for (const KeepOff& k : keep_off) told_with_source(k, [&] { find_boxes_of(k); });
+  }
+
+  void find_boxes_of(const KeepOff& k) {
+    const TriangleMesh* mesh = mesh_of(k.part);
+    if (mesh == nullptr) require_known(k.part);
+    for (const KeepOffBox& box : k.boxes) {
+      box.check();
+      if (mesh == nullptr) continue;  // It stays: no finger takes it.
+      const SurfacePieces in_box = surface_in_box(*mesh, box);
+      if (in_box.empty())
+        throw InvalidInput("keep_off of part '" + k.part + "': a box has nothing of its surface in it");
+      add_pieces(k.part, in_box);
     }
   }
 
   void find_segments(const std::vector<KeepOff>& keep_off) {
-    for (const KeepOff& k : keep_off) {
-      const auto found = result_.parts.find(k.part);
-      if (found == result_.parts.end()) continue;
-      const std::vector<MeshSegment>& all = found->second.segmentation.segments;
-      for (const int s : k.segments) {
-        require(s >= 0 && s < static_cast<int>(all.size()), "keep_off of part '" + k.part + "'", s,
-                "must be the number of one of its " + std::to_string(all.size()) + " segments");
-        add_pieces(k.part, surface_of_faces(*mesh_of(k.part), all[s].faces));
-        untouchable_.emplace(k.part, s);
-      }
+    for (const KeepOff& k : keep_off) told_with_source(k, [&] { find_segments_of(k); });
+  }
+
+  void find_segments_of(const KeepOff& k) {
+    const auto found = result_.parts.find(k.part);
+    if (found == result_.parts.end()) return;
+    const std::vector<MeshSegment>& all = found->second.segmentation.segments;
+    const std::vector<std::string> names = segment_names(found->second.primitives);
+    std::vector<int> chosen = k.segments;
+    for (const std::string& name : k.names) chosen.push_back(segment_called(name, k.part, names));
+    for (const int s : chosen) {
+      require(s >= 0 && s < static_cast<int>(all.size()), "keep_off of part '" + k.part + "'", s,
+              "must be the number of one of its " + std::to_string(all.size()) + " segments");
+      add_pieces(k.part, surface_of_faces(*mesh_of(k.part), all[s].faces));
+      untouchable_.emplace(k.part, s);
     }
   }
 
@@ -230,11 +263,13 @@ class Planning {
     Remedy remedy;
     for (const PlacedMesh& part : operation.active) {
       const SegmentedPart& segmented = result_.parts.at(part.name);
+      const std::vector<std::string> names = segment_names(segmented.primitives);
       for (int s = 0; s < static_cast<int>(segmented.primitives.size()) && !monitor_.stopped(); ++s) {
         SegmentFate fate;
         fate.step = operation.name;
         fate.part = part.name;
         fate.segment = s;
+        fate.name = names[s];
         keep(judge_or_refuse(by, part, segmented, fate, remedy), fate);
         result_.fates.push_back(std::move(fate));
       }
@@ -255,7 +290,7 @@ class Planning {
   void keep(std::vector<FreeGrasp> found, SegmentFate& fate) {
     for (FreeGrasp& f : found) {
       fate.requirements.push_back(static_cast<int>(result_.requirements.size()));
-      result_.requirements.push_back({fate.step, fate.part + ", segment " + std::to_string(fate.segment), fate.fingers,
+      result_.requirements.push_back({fate.step, fate.part + "/" + fate.name, fate.fingers,
                                       1e-6 * std::round(1e6 * f.grasp.opening), f.lengths.shortest, f.lengths.longest});
       result_.grasps.push_back(std::move(f.grasp));
       if (options_.holding) result_.holdings.push_back(f.held);
@@ -271,7 +306,7 @@ class Planning {
       impossible_ = true;
     for (std::size_t i = first; i < result_.fates.size(); ++i) {
       const SegmentFate& f = result_.fates[i];
-      why += "; " + f.part + ", segment " + std::to_string(f.segment) + ": " + f.refused;
+      why += "; " + f.part + "/" + f.name + ": " + f.refused;
     }
     result_.missing.push_back(why);
     const auto help = [&](const std::string& what) { result_.help.push_back(operation.name + ": " + what); };

@@ -10,7 +10,7 @@ import numpy.typing
 import os
 import typing
 from . import verify
-__all__: list[str] = ['AssemblyGrasp', 'AssemblyOperation', 'BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'BeamExtreme', 'BeamFrame', 'BeamMaterial', 'BeamMember', 'BeamSection', 'BeamState', 'BeamSupport', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactArea', 'ContactPairProvenance', 'ContactPatch', 'CuboidFit', 'Cylinder', 'DepthCamera', 'DepthImage', 'DepthNoise', 'DerivativeFreeResult', 'DistanceField', 'DistanceResult', 'DrawnSuccess', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'Facet', 'FeasibleGrasp', 'FingerGrip', 'FingerLengthRange', 'FittedCuboid', 'FittedPrimitive', 'FrameRegistration', 'Grasp', 'GraspHolding', 'GraspOptimum', 'GraspRating', 'GraspReport', 'GraspSuccess', 'GraspSynthesis', 'GraspWidth', 'Graspability', 'GridDistanceField', 'Gripper', 'GripperActuator', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'HeldLoad', 'HoldingRequirement', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'IntegrationReport', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'KeepOff', 'LineGrasp', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'ManipulationStats', 'Mesh', 'MeshDistanceField', 'MeshSegment', 'MeshSegmentation', 'MinimalGrippersResult', 'MotionResult', 'MotionStats', 'NextView', 'NlpResult', 'NodeLoad', 'NonlinearProblem', 'ObjectPathEvaluator', 'ObjectPathProblem', 'ObjectPathResult', 'ObjectRegions', 'ObjectSegmentation', 'Obstruction', 'OccupancyMap', 'OccupancyReport', 'OperationLoad', 'OperationOverlap', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'PairwiseWeights', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedMesh', 'PlacedPart', 'PlanGrippersResult', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'ProbabilisticSdf', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotMotion', 'RobotSource', 'SampledSuctionGrasps', 'ScrewThread', 'SdfHits', 'SearchTree', 'SegmentFate', 'SegmentRequirement', 'SegmentedObject', 'SegmentedPart', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'Suction', 'SuctionCup', 'SupportedFrame', 'SupportingPlane', 'ToolRegion', 'TourResult', 'Tray', 'Unloading', 'ViewCandidate', 'Voxels', 'WholeBodyProgram', 'WholeBodyTrajectory', 'World', 'beam_frame', 'cache_folder', 'camera_view_objective', 'centric_grasps', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'copper', 'cover_from_intersections', 'default_grasp_search', 'derivative_free_solver_names', 'drive_arc', 'drive_by_program', 'eigengrasp_hand', 'evaluate_graspability', 'find_package', 'finger_length_range', 'fit_cuboids', 'fit_primitives', 'flat_contact', 'follow_object_path', 'free_gripper', 'grasp_holding', 'grasp_search_names', 'graspability_map', 'hand_masks', 'held_load', 'inscribed_circle', 'jaw_grasps', 'joint_limit_objective', 'joint_velocity', 'line_contact', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimal_grippers', 'minimize_derivative_free', 'next_view', 'nlp_solver_names', 'operation_load', 'operation_overlap', 'optimised_order', 'optimize_grasp', 'paired_order', 'pairwise_weights', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_grippers', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stop_picks', 'plan_stops_exact', 'plan_straight_line', 'planar_facets', 'planner_names', 'platform_velocity', 'population_search_names', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'preferred_grippers', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'rectangular_section', 'register_frame', 'rehearse_operation', 'render_depth', 'resting_poses', 'robust_intersections', 'round_section', 'route_lengths', 'run_policy', 'sample_grasps', 'sample_suction_grasps', 'seal_gap', 'segment_depth_image', 'segment_grasps', 'segment_mesh', 'segment_objects', 'self_distance_objective', 'shape_diameters', 'share_headings', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'soft_finger_torque', 'solve_nonlinear', 'solve_set_cover', 'suction_share', 'synthesize_grasps', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs', 'write_plan']
+__all__: list[str] = ['AssemblyGrasp', 'AssemblyOperation', 'BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'BeamExtreme', 'BeamFrame', 'BeamMaterial', 'BeamMember', 'BeamSection', 'BeamState', 'BeamSupport', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactArea', 'ContactPairProvenance', 'ContactPatch', 'CuboidFit', 'Cylinder', 'DepthCamera', 'DepthImage', 'DepthNoise', 'DerivativeFreeResult', 'DistanceField', 'DistanceResult', 'DrawnSuccess', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'Facet', 'FeasibleGrasp', 'FingerGrip', 'FingerLengthRange', 'FittedCuboid', 'FittedPrimitive', 'FrameRegistration', 'Grasp', 'GraspHolding', 'GraspOptimum', 'GraspRating', 'GraspReport', 'GraspSuccess', 'GraspSynthesis', 'GraspWidth', 'Graspability', 'GridDistanceField', 'Gripper', 'GripperActuator', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'HeldLoad', 'HoldingRequirement', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'IntegrationReport', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'KeepOff', 'LineGrasp', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'ManipulationStats', 'Mesh', 'MeshDistanceField', 'MeshSegment', 'MeshSegmentation', 'MinimalGrippersResult', 'MotionResult', 'MotionStats', 'NextView', 'NlpResult', 'NodeLoad', 'NonlinearProblem', 'ObjectPathEvaluator', 'ObjectPathProblem', 'ObjectPathResult', 'ObjectRegions', 'ObjectSegmentation', 'Obstruction', 'OccupancyMap', 'OccupancyReport', 'OperationLoad', 'OperationOverlap', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'PairwiseWeights', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedMesh', 'PlacedPart', 'PlanGrippersResult', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'ProbabilisticSdf', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotMotion', 'RobotSource', 'SampledSuctionGrasps', 'ScrewThread', 'SdfHits', 'SearchTree', 'SegmentFate', 'SegmentRequirement', 'SegmentedObject', 'SegmentedPart', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'Suction', 'SuctionCup', 'SupportedFrame', 'SupportingPlane', 'ToolRegion', 'TourResult', 'Tray', 'Unloading', 'ViewCandidate', 'Voxels', 'WholeBodyProgram', 'WholeBodyTrajectory', 'World', 'beam_frame', 'cache_folder', 'camera_view_objective', 'centric_grasps', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'copper', 'cover_from_intersections', 'default_grasp_search', 'derivative_free_solver_names', 'drive_arc', 'drive_by_program', 'eigengrasp_hand', 'evaluate_graspability', 'find_package', 'finger_length_range', 'fit_cuboids', 'fit_primitives', 'flat_contact', 'follow_object_path', 'free_gripper', 'grasp_holding', 'grasp_search_names', 'graspability_map', 'hand_masks', 'held_load', 'inscribed_circle', 'jaw_grasps', 'joint_limit_objective', 'joint_velocity', 'line_contact', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimal_grippers', 'minimize_derivative_free', 'next_view', 'nlp_solver_names', 'operation_load', 'operation_overlap', 'optimised_order', 'optimize_grasp', 'paired_order', 'pairwise_weights', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_grippers', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stop_picks', 'plan_stops_exact', 'plan_straight_line', 'planar_facets', 'planner_names', 'platform_velocity', 'population_search_names', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'preferred_grippers', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'rectangular_section', 'register_frame', 'rehearse_operation', 'render_depth', 'resting_poses', 'robust_intersections', 'round_section', 'route_lengths', 'run_policy', 'sample_grasps', 'sample_suction_grasps', 'seal_gap', 'segment_depth_image', 'segment_grasps', 'segment_mesh', 'segment_names', 'segment_objects', 'self_distance_objective', 'shape_diameters', 'share_headings', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'soft_finger_torque', 'solve_nonlinear', 'solve_set_cover', 'suction_share', 'synthesize_grasps', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs', 'write_plan']
 class Error(Exception):
     """
     Base of all errors of mmgrasp.
@@ -6787,9 +6787,9 @@ class KeepOff:
     
         KeepOff("pulley", segments=[2], boxes=[(mg.pose([0, 0, 0.02]), [0.07, 0.07, 0.004])])
     """
-    def __init__(self, part: str, *, segments: collections.abc.Sequence[int] = [], boxes: collections.abc.Sequence[tuple[numpy.typing.ArrayLike, numpy.typing.ArrayLike]] = []) -> None:
+    def __init__(self, part: str, *, segments: collections.abc.Sequence[int] = [], boxes: collections.abc.Sequence[tuple[numpy.typing.ArrayLike, numpy.typing.ArrayLike]] = [], names: collections.abc.Sequence[str] = [], source: str = '') -> None:
         """
-        Name of the part, numbers of segments that segment_mesh gives it by default, and boxes in its mesh's frame: pairs of T_mesh_box (4, 4) of the middle, and size (3,) [m].
+        Name of the part; numbers of segments that segment_mesh gives it by default, or their names by segment_names ("cylinder_1", "pulley/cylinder_1"); boxes in its mesh's frame: pairs of T_mesh_box (4, 4) of the middle, and size (3,) [m]; who asks for it, with which messages about it begin.
         """
     def __repr__(self) -> str:
         ...
@@ -6797,6 +6797,11 @@ class KeepOff:
     def boxes(self) -> list[tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]]:
         """
         Pairs of T_mesh_box (4, 4) and size (3,) [m].
+        """
+    @property
+    def names(self) -> list[str]:
+        """
+        Names of segments.
         """
     @property
     def part(self) -> str:
@@ -6807,6 +6812,11 @@ class KeepOff:
     def segments(self) -> list[int]:
         """
         Numbers of segments.
+        """
+    @property
+    def source(self) -> str:
+        """
+        Who asks for it.
         """
 class SegmentedPart:
     """
@@ -6844,6 +6854,11 @@ class SegmentFate:
     def kind(self) -> str:
         """
         Its primitive: cylinder, box, cone or sphere.
+        """
+    @property
+    def name(self) -> str:
+        """
+        Its name, as segment_names gives it: cylinder_1.
         """
     @property
     def part(self) -> str:
@@ -7183,12 +7198,13 @@ def fit_cuboids(points: numpy.typing.ArrayLike, *, T_world_tray: numpy.typing.Ar
         min_points: int = 60  # smaller clusters are left out
         plane_iterations: int = 1000  # random planes tried
     """
-def fit_primitives(mesh: Mesh, labels: numpy.typing.ArrayLike, *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None) -> list[FittedPrimitive]:
+def fit_primitives(mesh: Mesh, labels: numpy.typing.ArrayLike, *, threads: collections.abc.Sequence[ScrewThread] = [], progress: collections.abc.Callable[[str, float], typing.Any] | None = None) -> list[FittedPrimitive]:
     """
     The cylinder, box, cone or sphere that stands for each segment of a mesh: the one whose volume is closest to that of
     the segment's convex hull, of those with surface on them (P1, section 5.2.2). `labels` (m,): the segment of each face, as
-    MeshSegmentation.labels. Inner walls are never offered for grasping, nor are sides of a box with nothing on them. Raises
-    InvalidInput when there is not one label >= 0 a face.
+    MeshSegmentation.labels. Inner walls are never offered for grasping, nor are sides of a box with nothing on them. `threads`:
+    those of MeshSegmentation, which count as the cylinder through their crests. Raises InvalidInput when there is not one label
+    >= 0 a face, or for threads of other meshes.
     """
 def flat_contact(length: float, width: float) -> ContactArea:
     """
@@ -7872,6 +7888,10 @@ def segment_mesh(mesh: Mesh, *, progress: collections.abc.Callable[[str, float],
         faces: int = 20000  # larger faces are cut until there are about so many, for the work alone
         seed: int = 1  # same seed, same segments
         threads: int = 0  # 0: all
+    """
+def segment_names(primitives: collections.abc.Sequence[FittedPrimitive]) -> list[str]:
+    """
+    A name for each segment of a part by its primitive: the kind and the place among those of the kind, from 1, in the order of the segments, largest area first: cylinder_1, box_1, cylinder_2.
     """
 def segment_objects(points: numpy.typing.ArrayLike, normals: numpy.typing.ArrayLike | None = None, *, plane: SupportingPlane | None = None, up: numpy.typing.ArrayLike | None = None, eye: numpy.typing.ArrayLike | None = None, leaf: float = 0.004, plane_tolerance: float = 0.007, up_angle: float = 0.35, min_plane_share: float = 0.15, max_height: float = 0.5, max_beside: float = 0.05, patch: float = 0.02, concavity: float = 0.45, min_points: int = 100, plane_iterations: int = 1000) -> ObjectSegmentation:
     """

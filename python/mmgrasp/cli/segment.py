@@ -37,7 +37,7 @@ def run_segment(arguments: argparse.Namespace, console: Console) -> int:
         size = np.ptp(points, axis=0)
         _check_size(arguments, float(np.linalg.norm(size)))
         found = _core.segment_mesh(mesh, seed=arguments.seed, threads=arguments.threads, progress=report)
-        primitives = _core.fit_primitives(mesh, found.labels, progress=report)
+        primitives = _core.fit_primitives(mesh, found.labels, threads=found.threads, progress=report)
         content = segments_to_dict(arguments, mesh, size, found, primitives)
         if folder is not None:
             report("writing", 0.0)
@@ -47,7 +47,8 @@ def run_segment(arguments: argparse.Namespace, console: Console) -> int:
                 from ..viz.segment_pictures import write_segment_pictures
 
                 with folder.illustrated() as draft:
-                    write_segment_pictures(points, mesh.triangles, found.labels, found.diameters, draft)
+                    names = [segment["name"] for segment in content["segments"]]
+                    write_segment_pictures(points, mesh.triangles, found.labels, names, found.diameters, draft)
             report("writing", 1.0)
     if arguments.json:
         print(json.dumps(content, indent=1, allow_nan=False))
@@ -83,6 +84,7 @@ def segments_to_dict(
     if unknown > _UNKNOWN_SHARE:
         notes.append(f"{100 * unknown:.0f} % of the faces have nothing behind them: the mesh may be a sheet")
     segments = []
+    names = _core.segment_names(primitives)
     for number, (segment, primitive) in enumerate(zip(found.segments, primitives, strict=True)):
         widths = [
             {"width": w.width, "axis": [float(x) for x in w.axis], "covered": w.covered} for w in primitive.widths
@@ -90,6 +92,7 @@ def segments_to_dict(
         segments.append(
             {
                 "segment": number,
+                "name": names[number],
                 "colour": segment_colour(number),
                 "faces": len(segment.faces),
                 "area": segment.area,
@@ -134,7 +137,7 @@ def _print(content: dict[str, Any], out: Path | None, console: Console) -> None:
         f"{printable(content['mesh'])}: {content['triangles']} triangles, {across} mm", markup=False, soft_wrap=True
     )
     table = Table(title="segments; sizes in mm, share of a width's contact that is surface in brackets")
-    for column in ("no.", "", "primitive", "size", "thickness", "volume", "widths"):
+    for column in ("no.", "", "name", "size", "thickness", "volume", "widths"):
         table.add_column(column, justify="right" if column in ("no.", "thickness", "volume") else "left")
     for row in content["segments"]:
         ratio = row["volume"] / row["hull_volume"] if row["hull_volume"] > 0 else float("nan")
@@ -142,7 +145,7 @@ def _print(content: dict[str, Any], out: Path | None, console: Console) -> None:
         table.add_row(
             str(row["segment"]),
             f"[on {row['colour']}]  [/]",
-            row["primitive"],
+            row["name"],
             " x ".join(f"{1e3 * x:.2f}" for x in row["size"]),
             f"{1e3 * row['diameter']:.2f}",
             "-" if np.isnan(ratio) else f"{ratio:.2f} of hull",
@@ -158,7 +161,7 @@ def _print(content: dict[str, Any], out: Path | None, console: Console) -> None:
             soft_wrap=True,
         )
     console.print(
-        "mmgrasp grippers: `keep_off: [no., ...]` of a part keeps fingers off its segments",
+        "mmgrasp grippers: `keep_off: [name, ...]` of a part keeps fingers off its segments",
         markup=False,
         soft_wrap=True,
     )

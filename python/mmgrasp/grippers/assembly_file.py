@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -12,7 +13,7 @@ from numpy.typing import NDArray
 
 from .. import _core
 from .._argument_errors import checked
-from .._core import FingerGrip, GripperActuator, HoldingRequirement, InvalidInput, Mesh
+from .._core import FingerGrip, GripperActuator, HoldingRequirement, InvalidInput, KeepOff, Mesh
 from .._files import ASSETS, shipped
 from ..documents.reading import Node, near_miss, read_yaml
 from ..scenario.robot_section import find_file
@@ -25,6 +26,8 @@ LARGEST_PART, SMALLEST_PART = 2.0, 0.0005  # [m]
 MOST_TRIANGLES = 1_000_000  # of a part: segments and grasps take minutes beyond
 FINGER_DEFAULTS: dict[str, Any] = {name: value for name, (value, _) in _core._plan_grippers_option_table().items()}
 LOAD_DEFAULTS = HoldingRequirement(FingerGrip())
+SEGMENT_KINDS = ("cylinder", "box", "cone", "sphere")
+SEGMENT_NAME = re.compile(rf"(?:{'|'.join(SEGMENT_KINDS)})_[1-9]\d{{0,5}}")
 SET_OPTIONS = ("change_cost", "time_limit", "max_nodes", "max_overlap")
 
 
@@ -36,10 +39,8 @@ class AssemblyPart:
     mesh: Mesh
     pose: Pose
     """T_assembly_mesh."""
-    keep_off: list[int] = field(default_factory=list)
-    """Segments that no finger may touch."""
-    keep_off_boxes: list[tuple[Pose, NDArray[np.float64]]] = field(default_factory=list)
-    """Boxes whose surface no finger may touch: T_mesh_box of the middle, size [m]."""
+    keep_off: list[KeepOff] = field(default_factory=list)
+    """What of its surface no finger may touch."""
     source: str = ""
     inside_out: bool = False
     """As its file has it: its faces were turned."""
@@ -208,24 +209,28 @@ def _read_part(node: Node, scale: float, unit: str) -> AssemblyPart:
             f"has {len(mesh.triangles):,} triangles: parts of up to {MOST_TRIANGLES:,} can be planned for; "
             "export it coarser (0.01 mm off is nothing to a finger)"
         )
-    segments, boxes = _read_keep_off(node, scale)
+    keep_off = (
+        [_read_keep_off(name, element, scale) for element in node["keep_off"].elements()] if "keep_off" in node else []
+    )
     pose = _pose(node["pose"], scale) if "pose" in node else np.eye(4)
     inside_out = bool(source) and _core._file_is_inside_out(source)
-    return AssemblyPart(name, mesh, pose, segments, boxes, source, inside_out)
+    return AssemblyPart(name, mesh, pose, keep_off, source, inside_out)
 
 
-def _read_keep_off(part: Node, scale: float) -> tuple[list[int], list[tuple[Pose, NDArray[np.float64]]]]:
-    """Numbers of segments, and boxes."""
-    segments: list[int] = []
-    boxes: list[tuple[Pose, NDArray[np.float64]]] = []
-    for element in part["keep_off"].elements() if "keep_off" in part else []:
-        if not isinstance(element.raw, dict):
-            segments.append(element.integer(least=0))
-            continue
-        element.mapping("box", "pose")
-        place = _pose(element["pose"], scale) if "pose" in element else np.eye(4)
-        boxes.append((place, np.array(element["box"].numbers(3, above=0)) * scale))
-    return segments, boxes
+def _read_keep_off(part: str, node: Node, scale: float) -> KeepOff:
+    """A segment by name or number, or a box. Which segments there are is known when the part has been cut."""
+    source = f"{node.place}: {node.name}"
+    if isinstance(node.raw, str):
+        own = node.raw.removeprefix(f"{part}/")
+        if not SEGMENT_NAME.fullmatch(own):
+            like = [f"{kind}_1" for kind in SEGMENT_KINDS]
+            node.fail(f"must be the name of a segment as `mmgrasp segment` gives it{near_miss(own, like)}")
+        return KeepOff(part, names=[own], source=source)
+    if not isinstance(node.raw, dict):
+        return KeepOff(part, segments=[node.integer(least=0)], source=source)
+    node.mapping("box", "pose")
+    place = _pose(node["pose"], scale) if "pose" in node else np.eye(4)
+    return KeepOff(part, boxes=[(place, np.array(node["box"].numbers(3, above=0)) * scale)], source=source)
 
 
 def _turned(node: Node, scale: float) -> Mesh:

@@ -43,6 +43,7 @@ def result_to_dict(plan: GripperPlan) -> dict[str, Any]:
                 "operation": f.step,
                 "part": f.part,
                 "segment": f.segment,
+                "name": f.name,
                 "primitive": f.kind,
                 "fingers": f.fingers,
                 "grasps": f.tried,

@@ -16,7 +16,6 @@ from .._core import (
     FittedPrimitive,
     HeldLoad,
     HoldingRequirement,
-    KeepOff,
     MeshSegmentation,
     MinimalGrippersResult,
     Outcome,
@@ -52,6 +51,11 @@ class GripperPlan:
     """For each operation what the chosen gripper met when the operation was gone through again by the collision checker; '' nothing."""
     holdings: list[HeldLoad | None] = field(default_factory=list)
     """One per requirement; None where the assembly says nothing of weight and insertion."""
+
+    @property
+    def segment_names(self) -> dict[str, list[str]]:
+        """For each part that is moved the names of its segments: "cylinder_1", the largest cylinder."""
+        return {name: _core.segment_names(primitives) for name, primitives in self.primitives.items()}
 
     @property
     def notes(self) -> list[str]:
@@ -125,15 +129,10 @@ def options_of(assembly: Assembly) -> dict[str, Any]:
 def plan_grippers(assembly: Assembly, *, progress: Progress = None) -> GripperPlan:
     """The least set of grippers for an assembly (P1 chapter 5): `mmgrasp.gripper_design.plan_grippers` for what a file says."""
     moved = [name for step in assembly.steps for name in step.active]
-    keep_off = [
-        KeepOff(name, segments=part.keep_off, boxes=part.keep_off_boxes)
-        for name, part in assembly.parts.items()
-        if name in moved
-    ]
     found = _core.plan_grippers(
         [operation_of(assembly, step) for step in assembly.steps],
         assembly.actuators,
-        keep_off=keep_off,
+        keep_off=[k for name, part in assembly.parts.items() if name in moved for k in part.keep_off],
         holding=holding_of(assembly),
         progress=progress,
         **options_of(assembly),

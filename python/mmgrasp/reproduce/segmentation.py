@@ -113,7 +113,7 @@ def taken_apart(part: Composed) -> dict[str, Any]:
     bodies, areas = part.body_of_faces(mesh), _areas(mesh)
     right = 0.0
     offered = []
-    for k, fit in enumerate(fit_primitives(mesh, found.labels)):
+    for k, fit in enumerate(fit_primitives(mesh, found.labels, threads=found.threads)):
         own = found.labels == k
         right += max(float(areas[own & (bodies == body)].sum()) for body in np.unique(bodies))
         offered.append({"kind": fit.kind, "widths": [round(1e3 * w.width, 3) for w in fit.widths]})

@@ -12,8 +12,8 @@ from .. import _core
 from .._core import Gripper
 from ..grippers.planning import GripperPlan
 from .png import write_png
-from .segment_pictures import coloured
-from .style import OBSTACLE, PART, ROBOT_ARM, segment_colour
+from .segment_pictures import segment_picture
+from .style import OBSTACLE, PART, ROBOT_ARM
 from .two_sides import FROM_ABOVE_AND_ASIDE, Body, Points, two_sides
 
 SIDE = 520
@@ -32,9 +32,10 @@ def write_gripper_pictures(plan: GripperPlan, out: Path, report: Callable[[str, 
     for i, name in enumerate(names):
         report("pictures", i / (len(names) + len(steps)))
         mesh, labels = plan.assembly.parts[name].mesh, np.asarray(plan.segmentations[name].labels)
-        vertices, triangles = np.asarray(mesh.vertices), np.asarray(mesh.triangles)
-        bodies = coloured(vertices, triangles, labels, segment_colour)
-        paths.append(write_png(out / picture_name("segments", name), two_sides(bodies, side=SIDE)))
+        image = segment_picture(
+            np.asarray(mesh.vertices), np.asarray(mesh.triangles), labels, plan.segment_names[name], SIDE
+        )
+        paths.append(write_png(out / picture_name("segments", name), image))
     for i in range(len(steps)):
         report("pictures", (len(names) + i) / (len(names) + len(steps)))
         paths.append(

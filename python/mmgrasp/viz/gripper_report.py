@@ -137,7 +137,7 @@ def _segments(plan: GripperPlan, pictures: Path | None) -> str:
         [
             escape(f.step),
             escape(f.part),
-            str(f.segment),
+            escape(f.name),
             f.kind,
             str(f.fingers) if f.fingers else "-",
             f"{f.free} of {f.tried}",
@@ -146,7 +146,7 @@ def _segments(plan: GripperPlan, pictures: Path | None) -> str:
         for f in plan.fates
     ]
     head = ["Operation", "Part", "Segment", "Primitive", "Fingers", "Free grasps", "Verdict"]
-    out = "<h2>The segments</h2>" + table(head, rows, {2, 4})
+    out = "<h2>The segments</h2>" + table(head, rows, {4})
     return out + "".join(_figure(pictures, picture_name("segments", n), f"Segments of {n}") for n in plan.segmentations)
 
 

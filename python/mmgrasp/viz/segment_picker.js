@@ -10,7 +10,7 @@ function bytesOf(text) {
 
 // A part of the page's data with its arrays read: vertices (3 n), triangles (3 m), labels (m), middle and radius of its ball.
 function readPart(data) {
-  const part = {name: data.name, colours: data.colours, kept: new Set(data.keep_off), texts: data.segments};
+  const part = {name: data.name, colours: data.colours, kept: new Set(data.keep_off), names: data.names, texts: data.segments};
   part.vertices = new Float32Array(bytesOf(data.vertices));
   part.triangles = new Uint32Array(bytesOf(data.triangles));
   part.labels = new Uint32Array(bytesOf(data.labels));
@@ -79,7 +79,7 @@ function yamlLines(parts) {
   for (const part of parts) {
     if (!part.kept.size) continue;
     lines.push(`  - name: ${JSON.stringify(part.name)}`);
-    lines.push(`    keep_off: [${[...part.kept].sort((a, b) => a - b).join(', ')}]`);
+    lines.push(`    keep_off: [${[...part.kept].sort((a, b) => a - b).map(s => part.names[s]).join(', ')}]`);
   }
   return lines.join('\n');
 }
@@ -182,7 +182,7 @@ function startPicker(root, parts) {
       box.checked = part.kept.has(segment);
       box.onchange = () => { toggle(part, segment); refresh(); };
       swatch.style.background = part.colours[segment];
-      label.append(box, swatch, ` segment ${segment}: ${text}`);
+      label.append(box, swatch, ` ${part.names[segment]}${text}`);
       list.append(label);
     });
     find('pre').textContent = yamlLines(parts) || '(nothing chosen)';

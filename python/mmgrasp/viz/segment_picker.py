@@ -37,11 +37,11 @@ def picker_html(plan: GripperPlan) -> str:
 
 
 def picker_data(plan: GripperPlan) -> list[dict[str, Any]]:
-    """Each moved part: arrays as base64 of little-endian float32 (3 n, in its own frame [m]) and uint32; per segment a colour and a text."""
+    """Each moved part: arrays as base64 of little-endian float32 (3 n, in its own frame [m]) and uint32; per segment a colour, a name and a text."""
     out = []
     for name, segmentation in plan.segmentations.items():
         part = plan.assembly.parts[name]
-        primitives = plan.primitives[name]
+        names = plan.segment_names[name]
         out.append(
             {
                 "name": name,
@@ -49,11 +49,12 @@ def picker_data(plan: GripperPlan) -> list[dict[str, Any]]:
                 "triangles": _packed(np.asarray(part.mesh.triangles), "<u4"),
                 "labels": _packed(np.asarray(segmentation.labels), "<u4"),
                 "colours": [segment_colour(i) for i in range(len(segmentation.segments))],
-                "segments": [
-                    p.kind + (", a screw thread" if s.threaded else "")
-                    for p, s in zip(primitives, segmentation.segments, strict=True)
+                "segments": [", a screw thread" if segment.threaded else "" for segment in segmentation.segments],
+                "names": names,
+                "keep_off": [
+                    *(number for k in part.keep_off for number in k.segments),
+                    *(names.index(chosen) for k in part.keep_off for chosen in k.names),
                 ],
-                "keep_off": list(part.keep_off),
             }
         )
     return out

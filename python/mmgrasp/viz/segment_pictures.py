@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
+from .legend import legend
 from .png import write_png
 from .style import hue_colour, segment_colour
 from .two_sides import Body, two_sides
@@ -22,11 +24,25 @@ def coloured(
 
 
 def write_segment_pictures(
-    vertices: np.ndarray, triangles: np.ndarray, labels: np.ndarray, diameters: np.ndarray, folder: Path
+    vertices: np.ndarray,
+    triangles: np.ndarray,
+    labels: np.ndarray,
+    names: Sequence[str],
+    diameters: np.ndarray,
+    folder: Path,
 ) -> None:
-    """segments.png, a colour a segment, and diameters.png, thin (blue) to thick (red) by rank."""
-    write_png(folder / "segments.png", two_sides(coloured(vertices, triangles, labels, segment_colour)))
+    """segments.png, a colour a segment with its name below, and diameters.png, thin (blue) to thick (red) by rank."""
+    write_png(folder / "segments.png", segment_picture(vertices, triangles, labels, names))
     write_png(folder / "diameters.png", two_sides(diameter_bodies(vertices, triangles, diameters)))
+
+
+def segment_picture(
+    vertices: np.ndarray, triangles: np.ndarray, labels: np.ndarray, names: Sequence[str], side: int = 620
+) -> NDArray[np.uint8]:
+    """A part from two sides, a colour a segment, and below which name has which colour."""
+    picture = two_sides(coloured(vertices, triangles, labels, segment_colour), side=side)
+    entries = [(name, segment_colour(i)) for i, name in enumerate(names)]
+    return np.concatenate([picture, legend(entries, picture.shape[1])], axis=0)
 
 
 def diameter_bodies(vertices: np.ndarray, triangles: np.ndarray, diameters: np.ndarray) -> list[Body]:

@@ -2,11 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "geometry/segmentation/alpha_expansion.hpp"
+#include "geometry/segmentation/find_threads.hpp"
 #include "geometry/segmentation/gaussian_mixture.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/random.hpp"
@@ -127,6 +129,168 @@ TEST(SegmentMesh, RingsAreNoThread) {
   EXPECT_TRUE(segment_mesh(*mesh).threads.empty());
 }
 
+/// A bolt along z: twelve turns of thread from below, a plain shank as thick as the crests, a head of twice that.
+class Bolt {
+ public:
+  static constexpr double kPitch = 0.001, kRoot = 0.0034, kCrest = 0.004, kHead = 0.008, kPlain = 0.0145;
+  std::shared_ptr<const TriangleMesh> mesh;
+
+  Bolt() {
+    const auto at = [](double r, double turn, double z) {
+      return Eigen::Vector3d(r * std::cos(2 * kPi * turn), r * std::sin(2 * kPi * turn), z);
+    };
+    constexpr int kAll = kSides * kTurns;
+    std::vector<Eigen::Vector3d> v;
+    std::vector<std::array<int, 3>> t;
+    for (int j = 0; j <= kAll + kSides; ++j) v.push_back(at(kRoot, 1.0 * j / kSides, kPitch * j / kSides));
+    const int crests = static_cast<int>(v.size());
+    for (int j = 0; j <= kAll; ++j) v.push_back(at(kCrest, 1.0 * j / kSides, kPitch * (1.0 * j / kSides + 0.5)));
+    const auto crest = [&](int j) { return crests + j; };
+    for (int j = 0; j < kAll; ++j) {  // the root's own indices are 0, 1, ...
+      t.push_back({j, j + 1, crest(j + 1)});
+      t.push_back({j, crest(j + 1), crest(j)});
+      t.push_back({crest(j), crest(j + 1), j + 1 + kSides});
+      t.push_back({crest(j), j + 1 + kSides, j + kSides});
+    }
+    const int tip = static_cast<int>(v.size());
+    v.emplace_back(0, 0, -kPitch);
+    for (int j = 0; j < kSides; ++j) t.push_back({tip, j + 1, j});
+    t.push_back({tip, 0, crest(0)});
+    t.push_back({tip, crest(0), kSides});
+    const int rings = static_cast<int>(v.size());
+    const std::vector<std::pair<double, double>> above{
+        {kCrest, kPlain}, {kCrest, 0.022}, {kHead, 0.022}, {kHead, 0.03}};
+    for (const auto& [r, z] : above)
+      for (int s = 0; s < kSides; ++s) v.push_back(at(r, 1.0 * s / kSides, z));
+    const auto ring = [&](int row, int s) { return rings + row * kSides + s % kSides; };
+    const int top = static_cast<int>(v.size());
+    v.emplace_back(0, 0, 0.03);
+    for (int s = 0; s < kSides; ++s) {
+      t.push_back({kAll + s, kAll + s + 1, ring(0, s + 1)});
+      t.push_back({kAll + s, ring(0, s + 1), ring(0, s)});
+      for (int row = 0; row < 3; ++row) {
+        t.push_back({ring(row, s), ring(row, s + 1), ring(row + 1, s + 1)});
+        t.push_back({ring(row, s), ring(row + 1, s + 1), ring(row + 1, s)});
+      }
+      t.push_back({top, ring(3, s), ring(3, s + 1)});
+    }
+    t.push_back({crest(kAll), kAll, ring(0, 0)});
+    t.push_back({kAll + kSides, crest(kAll), ring(0, 0)});
+    mesh = make_mesh(std::move(v), std::move(t));
+  }
+
+ private:
+  static constexpr int kSides = 48, kTurns = 12;
+};
+
+TEST(SegmentMesh, AThreadIsSmoothedAndNothingElseIs) {
+  const Bolt bolt;
+  ASSERT_TRUE(bolt.mesh->closed);
+  const std::vector<ScrewThread> threads = detail::find_threads(*bolt.mesh);
+  ASSERT_EQ(threads.size(), 1u);
+  const ScrewThread& thread = threads[0];
+  EXPECT_NEAR(std::abs(thread.pitch), Bolt::kPitch, 0.01 * Bolt::kPitch);
+  EXPECT_GT(thread.pitch, 0);  // it climbs as it turns to the left: right-handed
+  EXPECT_NEAR(thread.root_radius, Bolt::kRoot, 3e-5);
+  EXPECT_NEAR(thread.crest_radius, Bolt::kCrest, 3e-5);
+  std::vector<char> of_thread(bolt.mesh->vertices.size(), 0);
+  for (const int f : thread.faces) {
+    for (const int v : bolt.mesh->triangles[f]) {
+      of_thread[v] = 1;
+      EXPECT_LT(bolt.mesh->vertices[v].z(), Bolt::kPlain + 1e-9);
+    }
+  }
+  TriangleMesh smooth = *bolt.mesh;
+  detail::smooth_thread(thread, smooth);
+  int roots = 0;
+  for (std::size_t v = 0; v < smooth.vertices.size(); ++v) {
+    const Eigen::Vector3d &before = bolt.mesh->vertices[v], &after = smooth.vertices[v];
+    if (!of_thread[v]) {
+      EXPECT_EQ(before, after) << v;
+      continue;
+    }
+    EXPECT_NEAR(after.head<2>().norm(), thread.crest_radius, 3e-5) << v;
+    roots += before.head<2>().norm() < Bolt::kRoot + 1e-6;
+  }
+  EXPECT_GT(roots, 9 * 48);  // the run-outs may be left
+}
+
+TEST(SegmentMesh, AThreadedShankIsOneSegmentBesideTheHead) {
+  const Bolt bolt;
+  const MeshSegmentation found = segment_mesh(*bolt.mesh);
+  ASSERT_EQ(found.segments.size(), 2u);
+  const auto fits = fit_primitives(*bolt.mesh, found.labels, found.threads);
+  EXPECT_EQ(segment_names(fits), (std::vector<std::string>{"cylinder_1", "cylinder_2"}));
+  for (std::size_t k = 0; k < fits.size(); ++k) {
+    const bool head = fits[k].size.x() > 0.012;
+    EXPECT_NEAR(fits[k].size.x(), 2 * (head ? Bolt::kHead : Bolt::kCrest), 1e-4);
+    EXPECT_EQ(found.segments[k].threaded, !head);
+  }
+  MeshSegmentationOptions one, three;
+  one.diameter.threads = 1;
+  three.diameter.threads = 3;
+  const MeshSegmentation a = segment_mesh(*bolt.mesh, one), b = segment_mesh(*bolt.mesh, three);
+  EXPECT_EQ(a.labels, b.labels);
+  EXPECT_EQ(a.diameters, b.diameters);
+  EXPECT_EQ(a.threads[0].faces, b.threads[0].faces);
+}
+
+TEST(SegmentMesh, MovesAndGrowsWithTheMesh) {
+  const auto shaft = turned({{0.005, 0}, {0.005, 0.02}, {0.009, 0.02}, {0.009, 0.035}}, 32);
+  for (const auto& mesh : {shaft, Bolt().mesh}) {
+    const MeshSegmentation before = segment_mesh(*mesh);
+    const auto fits = fit_primitives(*mesh, before.labels, before.threads);
+    for (const double scale : {0.1, 1.0, 20.0}) {
+      const Eigen::Isometry3d T = Eigen::Translation3d(0.3 * scale, -0.11 * scale, 0.07 * scale) *
+                                  Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, -2, 0.5).normalized());
+      TriangleMesh moved = *mesh;
+      for (Eigen::Vector3d& v : moved.vertices) v = T * (scale * v);
+      const MeshSegmentation after = segment_mesh(moved);
+      EXPECT_EQ(after.labels, before.labels) << scale;
+      const auto again = fit_primitives(moved, after.labels, after.threads);
+      ASSERT_EQ(segment_names(again), segment_names(fits));
+      for (std::size_t k = 0; k < fits.size(); ++k)
+        EXPECT_LT((again[k].size / scale - fits[k].size).norm(), 1e-3 * fits[k].size.norm()) << scale;
+    }
+  }
+}
+
+/// The middle of a segment's corners.
+Eigen::Vector3d middle(const TriangleMesh& mesh, const MeshSegment& segment) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const int f : segment.faces)
+    for (const int v : mesh.triangles[f]) sum += mesh.vertices[v];
+  return sum / (3.0 * static_cast<double>(segment.faces.size()));
+}
+
+TEST(SegmentNames, AreThePlacesAmongTheirKindWhateverTheFilesOrder) {
+  // Three equal balls beside each other and a large box, as one mesh of four bodies.
+  std::vector<Eigen::Vector3d> v;
+  std::vector<std::array<int, 3>> t;
+  const auto add = [&](const TriangleMesh& body, const Eigen::Vector3d& at) {
+    const int n = static_cast<int>(v.size());
+    for (const Eigen::Vector3d& p : body.vertices) v.emplace_back(p + at);
+    for (const auto& f : body.triangles) t.push_back({f[0] + n, f[1] + n, f[2] + n});
+  };
+  add(*shape_mesh(Sphere{0.01}, 32), {0.03, 0, 0.04});
+  add(*shape_mesh(Sphere{0.01}, 32), {-0.03, 0, 0.04});
+  add(*shape_mesh(Box{{0.1, 0.05, 0.02}}), {0, 0, 0});
+  add(*shape_mesh(Sphere{0.01}, 32), {0, 0, 0.04});
+  for (int seed = 0; seed < 3; ++seed) {
+    const auto mesh = make_mesh(v, t);
+    const MeshSegmentation found = segment_mesh(*mesh);
+    const auto names = segment_names(fit_primitives(*mesh, found.labels));
+    ASSERT_EQ(names, (std::vector<std::string>{"box_1", "sphere_1", "sphere_2", "sphere_3"})) << seed;
+    for (int k = 1; k <= 3; ++k) {
+      const Eigen::Vector3d c = middle(*mesh, found.segments[k]);
+      EXPECT_LT((c - Eigen::Vector3d(0.03 * (k - 2), 0, 0.04)).norm(), 0.001) << seed;
+    }
+    Rng rng(static_cast<std::uint64_t>(seed));
+    for (std::size_t i = t.size(); i > 1; --i) std::swap(t[i - 1], t[static_cast<std::size_t>(rng.uniform() * i)]);
+  }
+  EXPECT_TRUE(segment_names({}).empty());
+}
+
 TEST(SegmentMesh, OpenMeshInsideOutIsTurned) {
   TriangleMesh mesh = *turned({{0.005, 0}, {0.005, 0.02}, {0.009, 0.02}, {0.009, 0.035}}, 32);
   mesh.triangles.pop_back();
@@ -204,6 +368,9 @@ TEST(FitPrimitives, RefusesLabelsThatDoNotFit) {
   const auto mesh = shape_mesh(Box{{0.03, 0.02, 0.01}});
   EXPECT_THROW(fit_primitives(*mesh, {0, 0}), InvalidInput);
   EXPECT_THROW(fit_primitives(*mesh, std::vector<int>(mesh->triangles.size(), -1)), InvalidInput);
+  ScrewThread other;
+  other.faces = {12};
+  EXPECT_THROW(fit_primitives(*mesh, std::vector<int>(mesh->triangles.size(), 0), {other}), InvalidInput);
 }
 
 }  // namespace

@@ -116,6 +116,18 @@ TEST(PlanGrippers, FingersKeepOffSegmentsAndBoxes) {
   const PlanGrippersResult none = plan_grippers(ring_on_peg(), kChuck, {{"ring", all}});
   EXPECT_EQ(none.outcome, Outcome::infeasible);
   EXPECT_NE(none.missing.at(0).find("not to be touched"), std::string::npos);
+  const std::vector<std::string> names = segment_names(ring_plan().parts.at("ring").primitives);
+  for (std::size_t i = 0; i < all.size(); ++i) EXPECT_EQ(ring_plan().fates[i].name, names.at(all[i]));
+  EXPECT_EQ(plan_grippers(ring_on_peg(), kChuck, {{"ring", {}, {}, names}}).missing, none.missing);
+  EXPECT_EQ(plan_grippers(ring_on_peg(), kChuck, {{"ring", {}, {}, {"ring/" + names[0]}}}).missing, none.missing);
+  try {
+    plan_grippers(ring_on_peg(), kChuck, {{"ring", {}, {}, {"cylinder_9"}, "a.yaml:7"}});
+    FAIL();
+  } catch (const InvalidInput& e) {
+    EXPECT_STREQ(e.what(),
+                 "a.yaml:7: keep_off of part 'ring' = cylinder_9: must be the name of one of its segments, cylinder_1; "
+                 "did you mean \"cylinder_1\"?");
+  }
   // The ring's lower 5 mm: pads may come 7 mm deep, so of the depths 3, 10 and 11.5 mm the first is left.
   KeepOffBox low{at(0, 0, 0.0025), {0.05, 0.05, 0.005}};
   const PlanGrippersResult upper = plan_grippers(ring_on_peg(), kChuck, {{"ring", {}, {low}}});

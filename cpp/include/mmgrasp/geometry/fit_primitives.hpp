@@ -1,12 +1,14 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <string>
 #include <vector>
 
 #include "mmgrasp/core/export.hpp"
 #include "mmgrasp/core/monitor.hpp"
 #include "mmgrasp/core/pose.hpp"
 #include "mmgrasp/geometry/mesh.hpp"
+#include "mmgrasp/geometry/segment_mesh.hpp"
 
 namespace mmgrasp {
 
@@ -44,8 +46,14 @@ struct MMGRASP_EXPORT FittedPrimitive {
 /// not. A cylinder is as long as its outward wall: bores, which may run on, do not count. Walls that face inwards
 /// (bores) are never offered, nor are pairs of a box' faces of which one has less than a
 /// tenth of its area on it. `labels`: the segment of each face, as in MeshSegmentation. Throws InvalidInput when there
-/// is not one label >= 0 a face. Nothing when the monitor stops it.
+/// is not one label >= 0 a face, or for threads of other meshes. Nothing when the monitor stops it. `threads`: those
+/// found by segment_mesh(), which count as the cylinder through their crests.
 MMGRASP_EXPORT std::vector<FittedPrimitive> fit_primitives(const TriangleMesh& mesh, const std::vector<int>& labels,
+                                                           const std::vector<ScrewThread>& threads = {},
                                                            const Monitor& monitor = {});
+
+/// A name for each segment: the kind of its primitive and its place among those of the kind, from 1, in the order of
+/// the segments, which segment_mesh() gives by size: "cylinder_1", "box_1", "cylinder_2".
+MMGRASP_EXPORT std::vector<std::string> segment_names(const std::vector<FittedPrimitive>& primitives);
 
 }  // namespace mmgrasp

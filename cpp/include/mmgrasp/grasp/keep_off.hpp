@@ -21,6 +21,8 @@ struct MMGRASP_EXPORT KeepOff {
   std::string part;                ///< The part's name.
   std::vector<int> segments = {};  ///< Numbers of the segments that segment_mesh() cuts it into by default.
   std::vector<KeepOffBox> boxes = {};
+  std::vector<std::string> names = {};  ///< Segments by segment_names(): "cylinder_1", or "<part>/cylinder_1".
+  std::string source = {};              ///< Who asks for it (a file and its line): messages about it begin with that.
 };
 
 /// Pieces of a surface: convex, plane polygons [m].

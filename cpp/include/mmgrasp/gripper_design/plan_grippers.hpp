@@ -51,6 +51,7 @@ struct MMGRASP_EXPORT SegmentFate {
   std::string step;               ///< The operation's name.
   std::string part;               ///< The part's name.
   int segment = 0;                ///< Its number.
+  std::string name;               ///< Its name as segment_names() gives it: "cylinder_1".
   std::string kind;               ///< Its primitive's name.
   int fingers = 0;                ///< 2, 3, or 0: no gripper suits its primitive.
   int tried = 0;                  ///< Grasps of it.

@@ -7,6 +7,7 @@
 #include <map>
 #include <string>
 
+#include "geometry/segmentation/find_threads.hpp"
 #include "geometry/segmentation/segment_surface.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/geometry/detail/inside_out.hpp"
@@ -196,7 +197,7 @@ const char* primitive_kind_name(PrimitiveKind kind) {
 }
 
 std::vector<FittedPrimitive> fit_primitives(const TriangleMesh& mesh, const std::vector<int>& labels,
-                                            const Monitor& monitor) {
+                                            const std::vector<ScrewThread>& threads, const Monitor& monitor) {
   require(labels.size() == mesh.triangles.size(), "labels", static_cast<double>(labels.size()),
           "must be one a face, " + std::to_string(mesh.triangles.size()));
   std::vector<std::vector<int>> segments;
@@ -210,6 +211,11 @@ std::vector<FittedPrimitive> fit_primitives(const TriangleMesh& mesh, const std:
   std::vector<FittedPrimitive> out;
   TriangleMesh outward = mesh;
   detail::turn_outwards(outward);
+  for (const ScrewThread& thread : threads) {
+    for (const int f : thread.faces)
+      require(f >= 0 && f < static_cast<int>(labels.size()), "faces of a thread", f, "must be faces of the mesh");
+    detail::smooth_thread(thread, outward);
+  }
   for (const std::vector<int>& faces : segments) {
     monitor.report("primitives", static_cast<double>(out.size()) / static_cast<double>(segments.size()));
     const SegmentSurface surface = detail::segment_surface(outward, faces);
@@ -228,6 +234,14 @@ std::vector<FittedPrimitive> fit_primitives(const TriangleMesh& mesh, const std:
     if (monitor.stopped()) return {};
     out.push_back(std::move(best));
   }
+  return out;
+}
+
+std::vector<std::string> segment_names(const std::vector<FittedPrimitive>& primitives) {
+  std::map<PrimitiveKind, int> count;
+  std::vector<std::string> out;
+  for (const FittedPrimitive& p : primitives)
+    out.push_back(primitive_kind_name(p.kind) + ("_" + std::to_string(++count[p.kind])));
   return out;
 }
 

@@ -39,18 +39,28 @@ struct Region {
 /// belongs to neither, the best pair first.
 class RegionJoiner {
  public:
-  RegionJoiner(const FaceGraph& graph, int count, const std::vector<int>& labels) : regions_(count), into_(count) {
+  RegionJoiner(const FaceGraph& graph, int count, const std::vector<char>& outer, const std::vector<int>& labels)
+      : regions_(count), into_(count) {
     for (int r = 0; r < count; ++r) into_[r] = r;
     std::vector<std::vector<int>> vertices(count);
     std::vector<double> all(count, 0), next(count, 0);
-    for (int f = 0; f < graph.size(); ++f) {
-      if (labels[f] >= 0) all[labels[f]] += graph.areas[f];
-    }
+    std::vector<char> has_outer(count, 0);
     for (int f = 0; f < graph.size(); ++f) {
       if (labels[f] < 0) continue;
+      regions_[labels[f]].area += graph.areas[f];
+      has_outer[labels[f]] |= outer[f];
+    }
+    // A bore's wall may be given to the next body but one, and its hull would then reach through the one between.
+    const auto shapes = [&](int f) { return labels[f] >= 0 && (outer[f] || !has_outer[labels[f]]); };
+    for (int f = 0; f < graph.size(); ++f) {
+      if (shapes(f)) all[labels[f]] += graph.areas[f];
+    }
+    std::vector<double> area(count, 0);
+    for (int f = 0; f < graph.size(); ++f) {
+      if (!shapes(f)) continue;
       Region& region = regions_[labels[f]];
-      region.area += graph.areas[f];
-      if (region.area >= next[labels[f]]) {
+      area[labels[f]] += graph.areas[f];
+      if (area[labels[f]] >= next[labels[f]]) {
         region.middles.push_back(graph.centres[f]);
         next[labels[f]] += all[labels[f]] / kMaxFacesMeasured;
       }
@@ -183,9 +193,10 @@ class RegionJoiner {
 
 }  // namespace
 
-int join_regions(const FaceGraph& graph, double narrowest, double convexity, std::vector<int>& labels) {
+int join_regions(const FaceGraph& graph, const std::vector<char>& outer, double narrowest, double convexity,
+                 std::vector<int>& labels) {
   const int count = labels.empty() ? 0 : *std::max_element(labels.begin(), labels.end()) + 1;
-  RegionJoiner joiner(graph, count, labels);
+  RegionJoiner joiner(graph, count, outer, labels);
   joiner.join_narrow(narrowest);
   joiner.join_convex(convexity);
   return joiner.renumber(labels);

@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -63,10 +64,10 @@ std::vector<int> find_regions(const FaceGraph& graph, const std::vector<int>& cl
   }
   std::vector<int> labels = detail::connected_regions(graph, seed, passable, narrowest * narrowest);
   detail::grow_regions(graph, outer, labels);
-  const int count = detail::join_regions(graph, narrowest, options.convexity, labels);
+  const int count = detail::join_regions(graph, outer, narrowest, options.convexity, labels);
   detail::label_inner_walls(graph, walls, count, labels);
   detail::dissolve_islands(graph, narrowest * narrowest, labels);
-  detail::join_regions(graph, narrowest, options.convexity, labels);
+  detail::join_regions(graph, outer, narrowest, options.convexity, labels);
   return labels;
 }
 
@@ -110,7 +111,7 @@ double median_by_area(std::vector<std::pair<double, double>> values) {
   return 0;
 }
 
-void list_segments(const TriangleMesh& mesh, MeshSegmentation& out) {
+void list_segments(const TriangleMesh& mesh, double diagonal, MeshSegmentation& out) {
   std::vector<char> threaded(mesh.triangles.size(), 0);
   for (const ScrewThread& thread : out.threads) {
     for (const int f : thread.faces) threaded[f] = 1;
@@ -118,28 +119,40 @@ void list_segments(const TriangleMesh& mesh, MeshSegmentation& out) {
   std::vector<MeshSegment> segments;
   std::vector<std::vector<std::pair<double, double>>> diameters;
   std::vector<double> thread_area;
+  std::vector<Vector3d> moment;
   for (std::size_t f = 0; f < out.labels.size(); ++f) {
     const std::size_t s = out.labels[f];
     if (segments.size() <= s) {
       segments.resize(s + 1);
       diameters.resize(s + 1);
       thread_area.resize(s + 1, 0);
+      moment.resize(s + 1, Vector3d::Zero());
     }
     const auto& t = mesh.triangles[f];
     const Vector3d a = mesh.vertices[t[0]];
     const double area = (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a).norm() / 2;
     segments[s].faces.push_back(static_cast<int>(f));
     segments[s].area += area;
+    moment[s] += area * (a + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3;
     if (out.diameters[f] > 0) diameters[s].emplace_back(out.diameters[f], area);
     if (threaded[f]) thread_area[s] += area;
   }
+  double largest = 0;
+  for (const MeshSegment& s : segments) largest = std::max(largest, s.area);
+  // Segments of one size (the feet of a plate) by their place: neither rounding nor the order of a file's faces, which
+  // another export changes, may swap them.
+  const auto key = [&](int s) {
+    const Vector3d middle = moment[s] / std::max(segments[s].area * diagonal, 1e-300);
+    return std::array<double, 4>{-std::round(1e6 * segments[s].area / largest), std::round(1e6 * middle.x()),
+                                 std::round(1e6 * middle.y()), std::round(1e6 * middle.z())};
+  };
   std::vector<int> order;
   for (std::size_t s = 0; s < segments.size(); ++s) {
     segments[s].diameter = median_by_area(std::move(diameters[s]));
     segments[s].threaded = thread_area[s] > kThreadShare * segments[s].area;
     if (!segments[s].faces.empty()) order.push_back(static_cast<int>(s));
   }
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return segments[a].area > segments[b].area; });
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return key(a) < key(b); });
   std::vector<int> number(segments.size(), -1);
   for (std::size_t k = 0; k < order.size(); ++k) {
     number[order[k]] = static_cast<int>(k);
@@ -198,7 +211,7 @@ MeshSegmentation segment_mesh(const TriangleMesh& mesh, const MeshSegmentationOp
   if (monitor.stopped()) return stopped();
   for (int& label : labels) label = std::max(label, 0);
   gather_pieces(graph, labels, diameters, mesh.triangles.size(), out);
-  list_segments(mesh, out);
+  list_segments(mesh, diagonal, out);
   return out;
 }
 

@@ -67,6 +67,19 @@ def test_speed_and_turning_share_the_wheels(made: Robots) -> None:
         assert robot.velocity_scale([v, 0, omega]) == pytest.approx(min(1.0, *most.values()))
 
 
+def test_four_wheels_share_ahead_aside_and_turning(made: Robots) -> None:
+    robot = made("omni", MECANUM)
+    limits = robot.base_limits
+    assert [limits[key] for key in ("wheel_velocity", "wheel_separation", "wheelbase")] == [1.0, 0.4, 0.5]
+    assert limits["linear_velocity"] == pytest.approx(1.0)
+    assert limits["angular_velocity"] == pytest.approx(1 / 0.45)
+    rng = np.random.default_rng(3)
+    for vx, vy, omega in rng.uniform(-1.5, 1.5, (200, 3)):
+        rates = np.abs(mecanum(vx, vy, omega, MECANUM)).max()
+        most = (20 / rates, 1 / math.hypot(vx, vy), 1 / 0.45 / abs(omega))
+        assert robot.velocity_scale([vx, vy, omega]) == pytest.approx(min(1.0, *most))
+
+
 @pytest.mark.parametrize("base", ["diff_drive", "omni"])
 @pytest.mark.parametrize(
     "stated", [{}, {"linear_velocity": 0.3}, {"angular_velocity": 0.5}, {"linear_acceleration": 0.4}]
@@ -74,9 +87,11 @@ def test_speed_and_turning_share_the_wheels(made: Robots) -> None:
 def test_no_combination_of_the_limits_is_too_much_for_a_wheel(
     made: Robots, base: str, stated: dict[str, float]
 ) -> None:
-    """Any velocity and acceleration within the limits at any heading, by kinematics of each wheel and a small step in time."""
+    """Any velocity that the robot's commands are scaled to and acceleration within the limits at any heading, by kinematics of each wheel
+    and a small step in time."""
     wheels = {**(DIFF if base == "diff_drive" else MECANUM), "acceleration": 40.0}
-    limits = made(base, wheels, **stated).base_limits
+    robot = made(base, wheels, **stated)
+    limits = robot.base_limits
     for key, value in stated.items():
         assert limits[key] == value
     rng = np.random.default_rng(2)
@@ -93,6 +108,9 @@ def test_no_combination_of_the_limits_is_too_much_for_a_wheel(
             hard = abs(a[0]) + abs(alpha) * wheels["track"] / 2
             hardest = max(hardest, hard / wheels["radius"])
             continue
+        c, s = math.cos(heading), math.sin(heading)
+        share = robot.velocity_scale([c * v[0] + s * v[1], c * v[1] - s * v[0], omega])
+        v, omega = share * v, share * omega
         h, rates = 1e-6, []
         for t in (0.0, h):
             theta, w = heading + omega * t, v + a * t
@@ -137,8 +155,10 @@ def test_a_drive_by_keeps_the_wheels_and_uses_them(made: Robots) -> None:
         ("diff_drive", DIFF, {"wheel_velocity": 0.8}, ["wheels", "wheel_velocity"]),
         ("diff_drive", DIFF, {"linear_velocity": 1.05}, ["linear_velocity = 1.05", "1.044"]),
         ("diff_drive", DIFF, {"angular_velocity": 6.0}, ["angular_velocity = 6", "5.57"]),
-        ("omni", MECANUM, {"linear_velocity": 0.8}, ["linear_velocity and angular_velocity"]),
-        ("omni", MECANUM, {"linear_velocity": 0.6, "angular_velocity": 1.0}, ["together"]),
+        ("omni", MECANUM, {"linear_velocity": 1.05}, ["linear_velocity = 1.05", "these wheels do, 1"]),
+        ("omni", MECANUM, {"angular_velocity": 2.3}, ["angular_velocity = 2.3", "2.22"]),
+        ("omni", MECANUM, {"wheelbase": 0.5}, ["wheels", "wheelbase"]),
+        ("omni", {**MECANUM, "acceleration": 20}, {"linear_acceleration": 0.4}, ["together"]),
         ("omni", {**MECANUM, "acceleration": 0.1}, {}, ["linear_acceleration and angular_acceleration"]),
         ("diff_drive", {**DIFF, "radius": 0}, {}, ["wheels.radius"]),
         ("diff_drive", {**DIFF, "speed": -1}, {}, ["wheels.speed"]),

@@ -10,8 +10,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+import yaml
 
 import mmgrasp as mg
+from conftest import ASSETS
 from mmgrasp.documents.reading import read_yaml
 from mmgrasp.scenario.robot_section import compose
 
@@ -144,6 +146,45 @@ def test_a_drive_by_keeps_the_wheels_and_uses_them(made: Robots) -> None:
     rates = (way[:, None] / h[:, None] + np.abs(np.diff(theta) / h)[:, None] * slow["track"] / 2) / slow["radius"]
     assert rates.max() <= 10.0 * (1 + 1e-6)
     assert rates.max() > 9.9
+
+
+def rims_of_drive(motion: dict[str, Any], lever: float) -> np.ndarray:
+    """|v_x| + |v_y| + |omega| (track + wheelbase) / 2 at the samples of a motion in passing, in the base's frame [m/s]."""
+    x, y, omega = np.array(motion["velocities"])[:, :3].T
+    theta = np.array(motion["positions"])[:, 2]
+    c, s = np.cos(theta), np.sin(theta)
+    rims: np.ndarray = np.abs(c * x + s * y) + np.abs(c * y - s * x) + lever * np.abs(omega)
+    return rims
+
+
+def test_a_cell_on_mecanum_wheels_is_planned_driven_past_and_verified(write: Callable[..., Path]) -> None:
+    """Wheels so slow that they bind on every drive; the plan made faster by a hundredth is refused."""
+    values = yaml.safe_load((ASSETS / "scenarios" / "omni_cell.yaml").read_text())
+    values["robot"]["wheels"] = {"radius": 0.05, "speed": 6.0, "track": 0.4, "wheelbase": 0.5}
+    values["robot"]["base_limits"] = {"linear_acceleration": 0.6, "angular_acceleration": 1.2}
+    values["trays"] = [{**values["trays"][0], "targets": [0, 4]}]
+    values["goal"] = [-0.6, 0.4, 3.0]
+    values["reach"] = {"samples": 500_000}
+    path = write(values)
+    plan = mg.plan_part_supply(path)
+    assert plan.outcome == mg.Outcome.solved, plan
+    content = mg.part_supply.plan_drive_by_picks(plan).plan_to_dict()
+    verdict = mg.verify_plan(content, scenario=path, samples=20)
+    assert verdict.ok, verdict.faults
+    for leg in content["route"]:
+        assert leg["duration"] > 0
+        faster = copy.deepcopy(content)
+        faster["route"][content["route"].index(leg)]["duration"] /= 1.01
+        assert "route-values" in {fault.code for fault in mg.verify_plan(faster, samples=20).faults}
+    moving = [motion for motion in content["drive_by"]["motions"] if np.ptp(np.array(motion["positions"])[:, 0]) > 0.1]
+    assert moving
+    for motion in moving:
+        fastest = rims_of_drive(motion, 0.45).max()
+        assert 0.2 < fastest <= 0.3 * (1 + 1e-6)
+        by = 1.01 * 0.3 / fastest
+        motion["times"] = [t / by for t in motion["times"]]
+        motion["velocities"] = [[by * v for v in row] for row in motion["velocities"]]
+    assert "wheel-limit" in {fault.code for fault in mg.verify_plan(content, samples=20).faults}
 
 
 @pytest.mark.parametrize(

@@ -179,7 +179,7 @@ def test_a_cell_on_mecanum_wheels_is_planned_driven_past_and_verified(write: Cal
     moving = [motion for motion in content["drive_by"]["motions"] if np.ptp(np.array(motion["positions"])[:, 0]) > 0.1]
     assert moving
     for motion in moving:
-        fastest = rims_of_drive(motion, 0.45).max()
+        fastest = float(rims_of_drive(motion, 0.45).max())
         assert 0.2 < fastest <= 0.3 * (1 + 1e-6)
         by = 1.01 * 0.3 / fastest
         motion["times"] = [t / by for t in motion["times"]]

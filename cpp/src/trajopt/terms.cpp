@@ -89,7 +89,7 @@ void SquareSum::hessian(const double*, const double* multipliers, double* out) c
 /// What all rows have in common: heading, velocity and widening at the place, and their derivatives by the variables.
 struct WheelTerm::Local {
   using Vector8 = Eigen::Matrix<double, 8, 1>;
-  double c, s, vx, vy, omega, wide, wide1, wide2;        // `wide` with its derivatives by h
+  double c, s, vx, vy, omega, wide, wide1, wide2;         // `wide` with its derivatives by h
   Eigen::Matrix<double, 5, 8> by = decltype(by)::Zero();  // of theta, vx, vy, omega and h
 
   Local(const double* x, double share, double bulge) {

@@ -84,10 +84,10 @@ class SquareSum : public Term {
   void hessian(const double*, const double* multipliers, double* out) const override;
 };
 
-/// |row (R(theta)^T v, omega)| (1 + x + 2 x^2) <= upper for each row on the base's velocity in its own frame, at a share
-/// of an interval in which v and omega of an omni base change linearly and theta follows; x = bulge h^2 <= 1/2 makes up
-/// for what lies between two such places, which may be more by the share x (1 / (1 - x) <= 1 + x + 2 x^2). Variables
-/// theta0, vx0, vx1, vy0, vy1, omega0, omega1, h.
+/// |row (R(theta)^T v, omega)| (1 + x + 2 x^2) <= upper for each row on the base's velocity in its own frame, at a
+/// share of an interval in which v and omega of an omni base change linearly and theta follows; x = bulge h^2 <= 1/2
+/// makes up for what lies between two such places, which may be more by the share x (1 / (1 - x) <= 1 + x + 2 x^2).
+/// Variables theta0, vx0, vx1, vy0, vy1, omega0, omega1, h.
 class WheelTerm : public CurvedTerm {
  public:
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, 3>;

@@ -210,8 +210,8 @@ TEST(OptimizeWholeBody, KeepsMecanumWheelsBetweenWaypoints) {
     const VectorXd rate = (fine.positions[i] - fine.positions[i - 1]) / (fine.times[i] - fine.times[i - 1]);
     const double theta = 0.5 * (fine.positions[i][2] + fine.positions[i - 1][2]);
     const double c = std::cos(theta), s = std::sin(theta);
-    most = std::max(most, std::abs(c * rate[0] + s * rate[1]) + std::abs(c * rate[1] - s * rate[0]) +
-                              0.45 * std::abs(rate[2]));
+    most = std::max(
+        most, std::abs(c * rate[0] + s * rate[1]) + std::abs(c * rate[1] - s * rate[0]) + 0.45 * std::abs(rate[2]));
   }
   EXPECT_LE(most, 0.5 + 1e-5);
   EXPECT_GE(most, 0.49);

@@ -288,7 +288,8 @@ TEST(PlanCheckFigures, DrivesOfMecanumWheelsTakeTheirTime) {
   const mmgrasp::BaseLimits& limits = options.base_limits;
   const double ahead = 1.4 / 0.4 + 0.4 / limits.linear_acceleration;
   const double top = 0.4 / (1.5 * std::sqrt(2.0) + 0.45 * M_PI / 2);  // of the piece, [1/s]
-  const double piece = 1 / top + top * std::max(1.5 / limits.linear_acceleration, M_PI / 2 / limits.angular_acceleration);
+  const double piece =
+      1 / top + top * std::max(1.5 / limits.linear_acceleration, M_PI / 2 / limits.angular_acceleration);
   plan.leg_values = {{1.4, 0, ahead}, {3, M_PI, 2 * piece}, {1.4, 0, ahead}};
   EXPECT_EQ(codes_of(plan), Codes{});
   for (CheckedLegValues& leg : plan.leg_values) {

@@ -21,9 +21,9 @@ MMGRASP_EXPORT WheelSpeeds wheel_speeds(double v, double omega, double wheel_sep
 MMGRASP_EXPORT Eigen::Vector3d platform_velocity(const WheelSpeeds& wheels, double wheel_separation);
 
 /// Rim speeds of all driven wheels are these rows times the platform velocity (v_x, v_y, omega), and wheel_velocity
-/// bounds each: v_x -+ omega W / 2 of a diff-drive (left, right); v_x -+ v_y -+ omega (W + B) / 2 of Mecanum wheels with
-/// rollers at 45 degrees (front left, front right, rear left, rear right), B the wheelbase. No rows where no wheel sets
-/// a limit.
+/// bounds each: v_x -+ omega W / 2 of a diff-drive (left, right); v_x -+ v_y -+ omega (W + B) / 2 of Mecanum wheels
+/// with rollers at 45 degrees (front left, front right, rear left, rear right), B the wheelbase. No rows where no wheel
+/// sets a limit.
 using WheelRows = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 MMGRASP_EXPORT WheelRows wheel_rows(BaseKind kind, const BaseLimits& limits);
 

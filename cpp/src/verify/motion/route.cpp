@@ -35,9 +35,9 @@ double least_time(double distance, double velocity, double acceleration) {
   return distance / velocity + velocity / acceleration;
 }
 
-/// How far the fastest of four Mecanum wheels runs per share of a straight piece [m], at the heading on it that asks the
-/// most of it: |v_x| + |v_y| + |omega| (track + wheelbase) / 2, of which |cos| + |sin| of the direction seen from the
-/// base is largest halfway between two axes.
+/// How far the fastest of four Mecanum wheels runs per share of a straight piece [m], at the heading on it that asks
+/// the most of it: |v_x| + |v_y| + |omega| (track + wheelbase) / 2, of which |cos| + |sin| of the direction seen from
+/// the base is largest halfway between two axes.
 double mecanum_travel(const Eigen::Vector3d& from, const Eigen::Vector3d& to, const BaseLimits& limits) {
   const Eigen::Vector3d way = to - from;
   const double course = std::atan2(way.y(), way.x());

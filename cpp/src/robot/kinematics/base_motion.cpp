@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/limits.hpp"
 
@@ -81,14 +82,14 @@ double largest_rim_travel(const WheelRows& rows, double theta, const Eigen::Vect
   const double length = way.head<2>().norm(), last = theta + way.z();
   double most = 0;
   for (Eigen::Index i = 0; i < rows.rows(); ++i) {
-    // Of heading, the row's value is a sinusoid about its share of turning: extreme at both ends, and where it peaks.
+    // The rim is a sinusoid of the heading about what turning asks: it is extreme at both ends, or where that peaks.
     const double amplitude = length * rows.row(i).head<2>().norm(), turning = rows(i, 2) * way.z();
     const double peak = std::atan2(way.y(), way.x()) - std::atan2(rows(i, 1), rows(i, 0));
     for (const double heading : {theta, last})
       most = std::max(most, std::abs(amplitude * std::cos(heading - peak) + turning));
-    const double first = std::ceil((std::min(theta, last) - peak) / M_PI);  // in halves of a turn from the peak
+    const double first = std::ceil((std::min(theta, last) - peak) / detail::kPi);  // in halves of a turn from the peak
     for (const double half : {first, first + 1}) {
-      if (peak + half * M_PI > std::max(theta, last)) break;
+      if (peak + half * detail::kPi > std::max(theta, last)) break;
       const double sign = std::fmod(half, 2) == 0 ? 1 : -1;
       most = std::max(most, std::abs(sign * amplitude + turning));
     }

@@ -46,8 +46,10 @@ const std::vector<OptionField<BaseLimits>>& base_limit_fields() {
            convert(value, "wheel_velocity", limits.wheel_velocity);
        },
        [](const BaseLimits& limits) -> py::object { return py::float_(limits.wheel_velocity); },
-       "of a diff-drive's wheel rims [m/s]; None or infinite: no limit"},
-      option<BaseLimits>("wheel_separation", &BaseLimits::wheel_separation, "of a diff-drive's wheels [m]")};
+       "of the rims of a diff-drive's or Mecanum wheels [m/s]; None or infinite: no limit"},
+      option<BaseLimits>("wheel_separation", &BaseLimits::wheel_separation, "between left and right wheels [m]"),
+      option<BaseLimits>("wheelbase", &BaseLimits::wheelbase,
+                         "between front and rear wheels [m] of an omni base with four Mecanum wheels; 0: it has none")};
   return fields;
 }
 

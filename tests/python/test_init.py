@@ -43,7 +43,14 @@ def test_the_base_is_told_from_its_wheels() -> None:
     assert two.separation == pytest.approx(0.4)
     four = wheeled([(x, y, "0 1 0") for x in (-0.2, 0.2) for y in (-0.2, 0.2)])
     assert (read_drive(four, "", None).base, read_drive(four, "", None).sure) == ("diff_drive", False)
-    assert read_drive(four, "<mesh filename='Mecanum.stl'/>", None).base == "omni"
+    mecanum = read_drive(four, "<mesh filename='Mecanum.stl'/>", None)
+    assert mecanum.base == "omni"
+    corners = wheeled([(x, y, "0 1 0") for x in (0.25, -0.25) for y in (0.2, -0.2)])
+    for base in (None, "omni"):
+        drive = read_drive(corners, "<mesh filename='Mecanum.stl'/>", base)
+        assert drive.base == "omni"
+        assert [drive.separation, drive.wheelbase] == pytest.approx([0.4, 0.5])
+    assert read_drive(corners, "", "omni").wheelbase is None  # nothing says which wheels they are
     turned = [(np.cos(a), np.sin(a), f"{np.cos(a)} {np.sin(a)} 0") for a in (0, 2.1, 4.2)]
     assert read_drive(wheeled(turned), "", None).base == "omni"
     with pytest.raises(mg.InvalidInput, match="--base"):

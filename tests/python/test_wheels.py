@@ -10,8 +10,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+import yaml
 
 import mmgrasp as mg
+from conftest import ASSETS
 from mmgrasp.documents.reading import read_yaml
 from mmgrasp.scenario.robot_section import compose
 
@@ -67,6 +69,19 @@ def test_speed_and_turning_share_the_wheels(made: Robots) -> None:
         assert robot.velocity_scale([v, 0, omega]) == pytest.approx(min(1.0, *most.values()))
 
 
+def test_four_wheels_share_ahead_aside_and_turning(made: Robots) -> None:
+    robot = made("omni", MECANUM)
+    limits = robot.base_limits
+    assert [limits[key] for key in ("wheel_velocity", "wheel_separation", "wheelbase")] == [1.0, 0.4, 0.5]
+    assert limits["linear_velocity"] == pytest.approx(1.0)
+    assert limits["angular_velocity"] == pytest.approx(1 / 0.45)
+    rng = np.random.default_rng(3)
+    for vx, vy, omega in rng.uniform(-1.5, 1.5, (200, 3)):
+        rates = np.abs(mecanum(vx, vy, omega, MECANUM)).max()
+        most = (20 / rates, 1 / math.hypot(vx, vy), 1 / 0.45 / abs(omega))
+        assert robot.velocity_scale([vx, vy, omega]) == pytest.approx(min(1.0, *most))
+
+
 @pytest.mark.parametrize("base", ["diff_drive", "omni"])
 @pytest.mark.parametrize(
     "stated", [{}, {"linear_velocity": 0.3}, {"angular_velocity": 0.5}, {"linear_acceleration": 0.4}]
@@ -74,9 +89,11 @@ def test_speed_and_turning_share_the_wheels(made: Robots) -> None:
 def test_no_combination_of_the_limits_is_too_much_for_a_wheel(
     made: Robots, base: str, stated: dict[str, float]
 ) -> None:
-    """Any velocity and acceleration within the limits at any heading, by kinematics of each wheel and a small step in time."""
+    """Any velocity that the robot's commands are scaled to and acceleration within the limits at any heading, by kinematics of each wheel
+    and a small step in time."""
     wheels = {**(DIFF if base == "diff_drive" else MECANUM), "acceleration": 40.0}
-    limits = made(base, wheels, **stated).base_limits
+    robot = made(base, wheels, **stated)
+    limits = robot.base_limits
     for key, value in stated.items():
         assert limits[key] == value
     rng = np.random.default_rng(2)
@@ -93,6 +110,9 @@ def test_no_combination_of_the_limits_is_too_much_for_a_wheel(
             hard = abs(a[0]) + abs(alpha) * wheels["track"] / 2
             hardest = max(hardest, hard / wheels["radius"])
             continue
+        c, s = math.cos(heading), math.sin(heading)
+        share = robot.velocity_scale([c * v[0] + s * v[1], c * v[1] - s * v[0], omega])
+        v, omega = share * v, share * omega
         h, rates = 1e-6, []
         for t in (0.0, h):
             theta, w = heading + omega * t, v + a * t
@@ -128,6 +148,45 @@ def test_a_drive_by_keeps_the_wheels_and_uses_them(made: Robots) -> None:
     assert rates.max() > 9.9
 
 
+def rims_of_drive(motion: dict[str, Any], lever: float) -> np.ndarray:
+    """|v_x| + |v_y| + |omega| (track + wheelbase) / 2 at the samples of a motion in passing, in the base's frame [m/s]."""
+    x, y, omega = np.array(motion["velocities"])[:, :3].T
+    theta = np.array(motion["positions"])[:, 2]
+    c, s = np.cos(theta), np.sin(theta)
+    rims: np.ndarray = np.abs(c * x + s * y) + np.abs(c * y - s * x) + lever * np.abs(omega)
+    return rims
+
+
+def test_a_cell_on_mecanum_wheels_is_planned_driven_past_and_verified(write: Callable[..., Path]) -> None:
+    """Wheels so slow that they bind on every drive; the plan made faster by a hundredth is refused."""
+    values = yaml.safe_load((ASSETS / "scenarios" / "omni_cell.yaml").read_text())
+    values["robot"]["wheels"] = {"radius": 0.05, "speed": 6.0, "track": 0.4, "wheelbase": 0.5}
+    values["robot"]["base_limits"] = {"linear_acceleration": 0.6, "angular_acceleration": 1.2}
+    values["trays"] = [{**values["trays"][0], "targets": [0, 4]}]
+    values["goal"] = [-0.6, 0.4, 3.0]
+    values["reach"] = {"samples": 500_000}
+    path = write(values)
+    plan = mg.plan_part_supply(path)
+    assert plan.outcome == mg.Outcome.solved, plan
+    content = mg.part_supply.plan_drive_by_picks(plan).plan_to_dict()
+    verdict = mg.verify_plan(content, scenario=path, samples=20)
+    assert verdict.ok, verdict.faults
+    for leg in content["route"]:
+        assert leg["duration"] > 0
+        faster = copy.deepcopy(content)
+        faster["route"][content["route"].index(leg)]["duration"] /= 1.01
+        assert "route-values" in {fault.code for fault in mg.verify_plan(faster, samples=20).faults}
+    moving = [motion for motion in content["drive_by"]["motions"] if np.ptp(np.array(motion["positions"])[:, 0]) > 0.1]
+    assert moving
+    for motion in moving:
+        fastest = float(rims_of_drive(motion, 0.45).max())
+        assert 0.2 < fastest <= 0.3 * (1 + 1e-6)
+        by = 1.01 * 0.3 / fastest
+        motion["times"] = [t / by for t in motion["times"]]
+        motion["velocities"] = [[by * v for v in row] for row in motion["velocities"]]
+    assert "wheel-limit" in {fault.code for fault in mg.verify_plan(content, samples=20).faults}
+
+
 @pytest.mark.parametrize(
     ("base", "wheels", "limits", "texts"),
     [
@@ -137,8 +196,10 @@ def test_a_drive_by_keeps_the_wheels_and_uses_them(made: Robots) -> None:
         ("diff_drive", DIFF, {"wheel_velocity": 0.8}, ["wheels", "wheel_velocity"]),
         ("diff_drive", DIFF, {"linear_velocity": 1.05}, ["linear_velocity = 1.05", "1.044"]),
         ("diff_drive", DIFF, {"angular_velocity": 6.0}, ["angular_velocity = 6", "5.57"]),
-        ("omni", MECANUM, {"linear_velocity": 0.8}, ["linear_velocity and angular_velocity"]),
-        ("omni", MECANUM, {"linear_velocity": 0.6, "angular_velocity": 1.0}, ["together"]),
+        ("omni", MECANUM, {"linear_velocity": 1.05}, ["linear_velocity = 1.05", "these wheels do, 1"]),
+        ("omni", MECANUM, {"angular_velocity": 2.3}, ["angular_velocity = 2.3", "2.22"]),
+        ("omni", MECANUM, {"wheelbase": 0.5}, ["wheels", "wheelbase"]),
+        ("omni", {**MECANUM, "acceleration": 20}, {"linear_acceleration": 0.4}, ["together"]),
         ("omni", {**MECANUM, "acceleration": 0.1}, {}, ["linear_acceleration and angular_acceleration"]),
         ("diff_drive", {**DIFF, "radius": 0}, {}, ["wheels.radius"]),
         ("diff_drive", {**DIFF, "speed": -1}, {}, ["wheels.speed"]),

@@ -84,6 +84,24 @@ class SquareSum : public Term {
   void hessian(const double*, const double* multipliers, double* out) const override;
 };
 
+/// |row (R(theta)^T v, omega)| (1 + x + 2 x^2) <= upper for each row on the base's velocity in its own frame, at a
+/// share of an interval in which v and omega of an omni base change linearly and theta follows; x = bulge h^2 <= 1/2
+/// makes up for what lies between two such places, which may be more by the share x (1 / (1 - x) <= 1 + x + 2 x^2).
+/// Variables theta0, vx0, vx1, vy0, vy1, omega0, omega1, h.
+class WheelTerm : public CurvedTerm {
+ public:
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, 3>;
+  WheelTerm(Rows wheels, double share, double bulge) : wheels_(std::move(wheels)), share_(share), bulge_(bulge) {}
+  void value(const double* x, double* out) const override;
+  void jacobian(const double* x, double* out) const override;
+  void hessian(const double* x, const double* multipliers, double* out) const override;
+
+ private:
+  struct Local;
+  Rows wheels_;
+  double share_, bulge_;
+};
+
 /// x1 - x0 and y1 - y0 equal the way of a unicycle. Variables x0, x1, y0, y1, theta0, omega0, omega1, v0, v1, h.
 class UnicycleStep : public Term {
  public:

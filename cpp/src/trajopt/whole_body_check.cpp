@@ -128,6 +128,15 @@ void check_limits(Ledger& ledger, const WholeBodyProblem& problem, const WholeBo
       ledger.note(std::abs(wheels.right) - limits.wheel_velocity, s.time, "right");
     }
   }
+  if (const WheelRows rows = wheel_rows(base, limits); base == BaseKind::omni && rows.rows() > 0) {
+    const char* wheels[] = {"front left", "front right", "rear left", "rear right"};
+    ledger.open("wheel speed", "m/s", 1e-6);
+    for (const Sample& s : samples) {
+      const VectorXd rims = rows * platform_velocity(s.q[2], s.drive.head<3>());
+      for (Eigen::Index i = 0; i < rims.size(); ++i)
+        ledger.note(std::abs(rims[i]) - limits.wheel_velocity, s.time, wheels[i]);
+    }
+  }
   ledger.open("acceleration", "rad/s^2 or m/s^2", 1e-5);
   VectorXd before;
   for (std::size_t i = 0; i + 1 < t.size(); ++i) {

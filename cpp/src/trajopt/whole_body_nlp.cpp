@@ -6,6 +6,7 @@
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/limits.hpp"
+#include "mmgrasp/robot/base_motion.hpp"
 #include "trajopt/tool_terms.hpp"
 
 namespace mmgrasp::detail {
@@ -52,6 +53,7 @@ WholeBodyNlp::WholeBodyNlp(const WholeBodyProblem& problem, double smoothing) : 
     for (int d = 0; d < layout_.drives(); ++d) hessian_.add(layout_.a(i, d), layout_.a(i, d));
   add_motion();
   add_limits();
+  add_mecanum_wheels();
   add_tool();
 }
 
@@ -196,6 +198,34 @@ void WholeBodyNlp::add_limits() {
           make(std::make_unique<LinearTerm>(std::vector<double>{sign, -rate}), i, {layout_.a(i, d), h}, -kInfinity, 0,
                "jerk", drive_names(group)[d]);
       }
+    }
+  }
+}
+
+void WholeBodyNlp::add_mecanum_wheels() {
+  constexpr int kPlaces = 4;  // of an interval
+  if (moving_base(problem_.group) != BaseKind::omni) return;
+  const BaseLimits& limits = problem_.group.robot().base_limits();
+  const WheelRows rows = wheel_rows(BaseKind::omni, limits);
+  if (rows.rows() == 0) return;
+  // The velocity in the frame of a base that turns is bent by 2 omega a + alpha v + omega^2 v at most; a bent line goes
+  // beyond its chord over a time d by d^2 / 8 of that.
+  const double v = std::min(limits.linear_velocity, limits.wheel_velocity), omega = limits.angular_velocity;
+  const double bend = 2 * omega * limits.linear_acceleration + (limits.angular_acceleration + omega * omega) * v;
+  const double bulge = rows.row(0).head<2>().norm() * bend / (8 * kPlaces * kPlaces) / limits.wheel_velocity;
+  for (int i = 0; i < layout_.intervals(); ++i) {
+    // Velocities at both ends are given. Another segment's time step may be shorter and make up for less.
+    const bool another = i + 1 < layout_.intervals() && layout_.segment(i + 1) != layout_.segment(i);
+    for (int place = i == 0 ? 1 : 0; place < kPlaces + (another ? 1 : 0); ++place) {
+      auto term = std::make_unique<WheelTerm>(rows, static_cast<double>(place) / kPlaces, bulge);
+      term->variables = {layout_.q(i, 2),     layout_.v(i, 0), layout_.v(i + 1, 0), layout_.v(i, 1),
+                         layout_.v(i + 1, 1), layout_.v(i, 2), layout_.v(i + 1, 2), layout_.h(layout_.segment(i))};
+      term->upper = VectorXd::Constant(rows.rows(), limits.wheel_velocity);
+      term->lower = -term->upper;
+      term->kind = "wheel speed";
+      term->waypoint = i;
+      term->what = "Mecanum wheels";
+      add(std::move(term));
     }
   }
 }

@@ -62,6 +62,7 @@ class MMGRASP_EXPORT WholeBodyNlp : public NonlinearProblem {
   void bound_variables();
   void add_motion();
   void add_limits();
+  void add_mecanum_wheels();
   void add_tool();
   const double* gathered(const Term& term, const Eigen::VectorXd& x);
 

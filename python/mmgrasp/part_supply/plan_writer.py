@@ -78,7 +78,7 @@ def scenario_to_dict(scenario: Scenario) -> dict[str, Any]:
             "urdfs": [_urdf(u) for u in robot.source.urdfs],
             "links": [_link(link) for link in robot.source.added_links],
             "base": robot.base,
-            "base_limits": {key: value for key, value in robot.base_limits.items() if math.isfinite(value)},
+            "base_limits": {key: value for key, value in robot.base_limits.items() if 0 < value < math.inf},
             "meshes": [{"file": path, "sha256": sha256_of(path)} for path in _mesh_files(robot)],
         },
         "arm": {

@@ -30,7 +30,7 @@ from .shapes import read_shapes
 from .suction_section import read_cups
 from .wheels import limits_of_wheels
 
-BASE_LIMITS = "linear_velocity angular_velocity linear_acceleration angular_acceleration workspace wheel_velocity wheel_separation"
+BASE_LIMITS = "linear_velocity angular_velocity linear_acceleration angular_acceleration workspace wheel_velocity wheel_separation wheelbase"
 ROBOT_KEYS = (
     "urdf srdf packages xacro_args mesh_tolerance base base_limits wheels mount frames group tool_link joints home"
 )

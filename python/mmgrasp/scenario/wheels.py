@@ -1,8 +1,8 @@
 """What the wheels of a base leave to its platform: their data as a robot's sheet has them, in place of speeds of the base.
 
-A rim runs at radius times the wheel's speed. Two driven wheels on one axle have rims at v -+ omega track / 2 (P1 4.11), which planners and
-`verify` keep as they stand. Four Mecanum wheels have them at |v_x| + |v_y| + |omega| (track + wheelbase) / 2 at most, that is sqrt(2) v at the
-worst heading: limits of the base are such that every combination of them keeps the wheels' own.
+A rim runs at radius times the wheel's speed. Two driven wheels on one axle have rims at v -+ omega track / 2 (P1 4.11), four Mecanum wheels at
+v_x -+ v_y -+ omega (track + wheelbase) / 2, which planners and `verify` keep as they stand: full speed ahead, aside and turning are not had at once.
+Accelerations are shared out: the base's limits are such that every combination of them keeps the wheels' own.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from ..documents.reading import Node
 
 WHEEL_KEYS = "radius speed track"
 MORE_WHEEL_KEYS = "wheelbase acceleration"
-COUPLED = ("wheel_velocity", "wheel_separation")  # limits of the base that the wheels' data give
+COUPLED = ("wheel_velocity", "wheel_separation", "wheelbase")  # limits of the base that the wheels' data give
 ROUNDING = 1e-9
 
 
@@ -65,25 +65,26 @@ def limits_of_wheels(node: Node, base: str, stated: dict[str, float]) -> dict[st
             node.fail(f"base_limits.{key} says the same: leave one of them out")
     wheels = read_wheels(node, base)
     limits, rim = dict(stated), wheels.radius * wheels.speed
-    if base == "diff_drive":  # wheel_velocity couples speed and turning rate
-        limits |= {"wheel_velocity": rim, "wheel_separation": wheels.track}
-        for key, most in (("linear_velocity", rim), ("angular_velocity", rim / wheels.lever)):
-            if stated.get(key, most) > most * (1 + ROUNDING):
-                node.fail(f"base_limits.{key} = {stated[key]:g} is more than these wheels do, {most:g}")
-            limits.setdefault(key, most)
-    else:
-        limits |= _shared(node, wheels, stated, rim, "velocity")
+    limits |= {"wheel_velocity": rim, "wheel_separation": wheels.track}  # couples speed and turning rate
+    if wheels.wheelbase is not None:
+        limits["wheelbase"] = wheels.wheelbase
+    for key, most in (("linear_velocity", rim), ("angular_velocity", rim / wheels.lever)):
+        if stated.get(key, most) > most * (1 + ROUNDING):
+            node.fail(f"base_limits.{key} = {stated[key]:g} is more than these wheels do, {most:g}")
+        limits.setdefault(key, most)
     if wheels.acceleration is not None:
         reach = wheels.radius * wheels.acceleration
-        if base == "omni":  # a turning platform's own axes turn under its velocity
-            reach -= wheels.along * limits["linear_velocity"] * limits["angular_velocity"]
-        limits |= _shared(node, wheels, stated, reach, "acceleration")
+        if base == "omni":
+            # A turning platform's own axes turn under its velocity, of which the rims leave (rim - lever omega) omega.
+            most_turned = wheels.along * limits["linear_velocity"] * limits["angular_velocity"]
+            reach -= min(most_turned, rim**2 / (4 * wheels.lever))
+        limits |= _shared_acceleration(node, wheels, stated, reach)
     return limits
 
 
-def _shared(node: Node, wheels: Wheels, stated: dict[str, float], rim: float, what: str) -> dict[str, float]:
+def _shared_acceleration(node: Node, wheels: Wheels, stated: dict[str, float], rim: float) -> dict[str, float]:
     """Linear and angular limit that together ask no more of a rim than `rim`; half of it for each where neither is stated."""
-    linear, angular = stated.get(f"linear_{what}"), stated.get(f"angular_{what}")
+    linear, angular = stated.get("linear_acceleration"), stated.get("angular_acceleration")
     if linear is None:
         linear = (0.5 * rim if angular is None else rim - wheels.lever * angular) / wheels.along
     if angular is None:
@@ -91,5 +92,7 @@ def _shared(node: Node, wheels: Wheels, stated: dict[str, float], rim: float, wh
     asked = wheels.along * linear + wheels.lever * angular
     if min(linear, angular) <= 0 or asked > rim * (1 + ROUNDING):
         most = f"{rim:.3g}, {max(rim, 0) / wheels.radius:.3g} times the radius"
-        node.fail(f"base_limits: linear_{what} and angular_{what} together ask more of these wheels' rims than {most}")
-    return {f"linear_{what}": linear, f"angular_{what}": angular}
+        node.fail(
+            f"base_limits: linear_acceleration and angular_acceleration together ask more of these wheels' rims than {most}"
+        )
+    return {"linear_acceleration": linear, "angular_acceleration": angular}

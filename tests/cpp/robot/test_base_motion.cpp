@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -97,6 +98,63 @@ TEST(BaseMotion, DrivingLimitsFoldTheWheelsIn) {
   EXPECT_EQ(driving_limits(BaseKind::omni, limits).angular_velocity, 3);
 }
 
+BaseLimits mecanum() {
+  BaseLimits limits;
+  limits.linear_velocity = limits.angular_velocity = 10;
+  limits.wheel_velocity = 0.5;
+  limits.wheel_separation = 0.4;
+  limits.wheelbase = 0.5;
+  return limits;
+}
+
+/// Rims by kinematics of each wheel: the velocity of its middle, and what of it the free rollers at 45 degrees leave.
+double fastest_rim(const Vector3d& v) {
+  double most = 0;
+  for (const int front : {1, -1}) {
+    for (const int left : {1, -1}) {
+      const Eigen::Vector2d at(0.25 * front, 0.2 * left), moves(v[0] - v[2] * at[1], v[1] + v[2] * at[0]);
+      most = std::max(most, std::abs(moves[0] - front * left * moves[1]));
+    }
+  }
+  return most;
+}
+
+TEST(BaseMotion, MecanumWheelsShareWhatTheyCanDo) {
+  const BaseLimits limits = mecanum();
+  const WheelRows rows = wheel_rows(BaseKind::omni, limits);
+  ASSERT_EQ(rows.rows(), 4);
+  for (int i = 0; i < 200; ++i) {
+    const Vector3d v(std::sin(1.7 * i), std::cos(2.3 * i), 2 * std::sin(0.9 * i + 1));
+    EXPECT_NEAR((rows * v).cwiseAbs().maxCoeff(), fastest_rim(v), 1e-12);
+    EXPECT_NEAR(velocity_scale(BaseKind::omni, limits, v), std::min(1.0, 0.5 / fastest_rim(v)), 1e-12);
+  }
+  EXPECT_NEAR(velocity_scale(BaseKind::omni, limits, {0, 0, 2}), 0.5 / 0.9, 1e-12);  // on the spot: 0.45 m
+  EXPECT_NEAR(velocity_scale(BaseKind::omni, limits, {1, 1, 0}), 0.25, 1e-12);       // one pair stands still
+  EXPECT_NEAR(driving_limits(BaseKind::omni, limits).angular_velocity, 0.5 / 0.45, 1e-12);
+  EXPECT_EQ(wheel_rows(BaseKind::omni, {}).rows(), 0);
+  EXPECT_EQ(wheel_rows(BaseKind::diff_drive, {}).rows(), 0);
+  EXPECT_EQ(wheel_rows(BaseKind::fixed, limits).rows(), 0);
+  const WheelRows two = wheel_rows(BaseKind::diff_drive, limits);
+  const WheelSpeeds wheels = wheel_speeds(0.3, 0.7, 0.4);
+  ASSERT_EQ(two.rows(), 2);
+  EXPECT_NEAR(two.row(0) * Vector3d(0.3, 0, 0.7), wheels.left, 1e-15);
+  EXPECT_NEAR(two.row(1) * Vector3d(0.3, 0, 0.7), wheels.right, 1e-15);
+}
+
+TEST(BaseMotion, TheFastestRimOfATurningDriveIsThatOfManyHeadings) {
+  const WheelRows rows = wheel_rows(BaseKind::omni, mecanum());
+  for (int i = 0; i < 100; ++i) {
+    const Vector3d way(2 * std::sin(1.7 * i), std::cos(2.3 * i), 4 * std::sin(0.9 * i + 1));
+    const double from = 3 * std::cos(0.7 * i), most = largest_rim_travel(rows, from, way);
+    double seen = 0;
+    for (int k = 0; k <= 4000; ++k)
+      seen = std::max(seen, fastest_rim(platform_velocity(from + way.z() * k / 4000, way)));
+    EXPECT_GE(most, seen - 1e-12) << i;
+    EXPECT_LE(most, seen * (1 + 1e-6)) << i;
+  }
+  EXPECT_EQ(largest_rim_travel(WheelRows(0, 3), 0.1, {1, 2, 3}), 0);
+}
+
 TEST(BaseMotion, BadNumbersAreRefused) {
   EXPECT_THROW(platform_velocity(kNan, Vector3d::Zero()), InvalidInput);
   EXPECT_THROW(platform_velocity(0, Vector3d(0, kNan, 0)), InvalidInput);
@@ -113,6 +171,11 @@ TEST(BaseMotion, BadNumbersAreRefused) {
   limits.wheel_velocity = 0.5;
   limits.wheel_separation = std::numeric_limits<double>::infinity();
   EXPECT_THROW(limits.check(), InvalidInput);
+  limits = {};
+  for (const double wheelbase : {-0.1, kNan, std::numeric_limits<double>::infinity()}) {
+    limits.wheelbase = wheelbase;
+    EXPECT_THROW(limits.check(), InvalidInput);
+  }
 }
 
 TEST(BaseMotion, TheRobotsHashSeesTheWheels) {

@@ -182,6 +182,42 @@ TEST(BaseRoute, OmniBasesDriveAndTurnOnOneProfile) {
   EXPECT_EQ(motion.base_poses.back(), path.poses.back());
 }
 
+TEST(BaseRoute, MecanumWheelsTimeWhatTheyDoAtOnce) {
+  BaseLimits limits;
+  limits.linear_velocity = 0.8;
+  limits.linear_acceleration = 0.5;
+  limits.angular_velocity = 3;
+  limits.angular_acceleration = 2;
+  limits.wheel_velocity = 0.5;
+  limits.wheel_separation = 0.4;
+  limits.wheelbase = 0.5;
+  const auto duration = [&](const std::vector<Eigen::Vector3d>& poses) {
+    BasePath path;
+    path.poses = poses;
+    return base_path_duration(path, BaseKind::omni, limits);
+  };
+  // 2 m ahead or aside at 0.5 m/s; across, one pair of wheels does it all: 0.5 / sqrt(2) m/s.
+  const double v = 0.5 / std::sqrt(2.0), d = std::sqrt(2.0);
+  EXPECT_NEAR(duration({{0, 0, 0}, {2, 0, 0}}), 2 / 0.5 + 0.5 / 0.5, 1e-12);
+  EXPECT_NEAR(duration({{0, 0, 0}, {0, -2, 0}}), 2 / 0.5 + 0.5 / 0.5, 1e-12);
+  EXPECT_NEAR(duration({{0, 0, 0}, {d, d, 0}}), 2 / v + v / 0.5, 1e-12);
+  EXPECT_NEAR(duration({{0, 0, M_PI / 4}, {d, d, M_PI / 4}}), 2 / 0.5 + 0.5 / 0.5, 1e-12);
+  // On the spot: 0.5 m/s at (0.4 + 0.5) / 2 m.
+  const double omega = 0.5 / 0.45;
+  EXPECT_NEAR(duration({{1, 2, 0}, {1, 2, 3}}), 3 / omega + omega / 2, 1e-12);
+  // While it turns by a right angle it comes by its worst heading: 2 m x sqrt(2) + 0.45 m x pi / 2 of the fastest rim.
+  const double top = 0.5 / (2 * std::sqrt(2.0) + 0.45 * M_PI / 2);
+  EXPECT_NEAR(duration({{0, 0, 0}, {2, 0, M_PI / 2}}), 1 / top + top / 0.25, 1e-12);  // 0.5 m/s^2 of 2 m
+  BasePath path;
+  path.poses = {{0, 0, 0.2}, {1.5, 2, 2.9}, {1, 2, -1}};
+  double most = 0;
+  const RobotMotion motion = base_path_motion(path, BaseKind::omni, limits, {}, Eigen::VectorXd(0), 1e-3);
+  for (const Eigen::Vector3d& t : motion.base_twists)
+    most = std::max(most, std::abs(t.x()) + std::abs(t.y()) + 0.45 * std::abs(t.z()));
+  EXPECT_LE(most, 0.5 + 1e-12);
+  EXPECT_GE(most, 0.5 - 1e-5);
+}
+
 TEST(BaseRoute, DurationOfTrapezoids) {
   BaseLimits limits;
   limits.linear_velocity = 0.5;

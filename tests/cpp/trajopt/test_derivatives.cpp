@@ -65,6 +65,22 @@ TEST_P(Derivatives, OfTheWholeProblemAreExact) {
 INSTANTIATE_TEST_SUITE_P(Bases, Derivatives, ::testing::Values(BaseKind::fixed, BaseKind::diff_drive, BaseKind::omni),
                          [](const auto& info) { return to_string(info.param); });
 
+TEST(Derivatives, OfMecanumWheelsAreExact) {
+  BaseLimits limits = with_wheels();
+  limits.wheelbase = 0.6;
+  detail::WholeBodyNlp plain(everything(test::fetchlike_whole_body(BaseKind::omni, with_wheels())), 0.5);
+  detail::WholeBodyNlp nlp(everything(test::fetchlike_whole_body(BaseKind::omni, limits)), 0.5);
+  // Of three intervals in two segments: three, four and one more, and four places, of four wheels each.
+  const Eigen::Index rows = nlp.constraint_bounds().lower.size();
+  EXPECT_EQ(rows - plain.constraint_bounds().lower.size(), 4 * (3 + 5 + 4));
+  Rng rng(4);
+  for (int round = 0; round < 3; ++round) {
+    VectorXd x = random_vector(rng, nlp.layout().size(), 1.5);
+    for (int s = 0; s < 2; ++s) x[nlp.layout().h(s)] = rng.uniform(0.2, 1.5);
+    test::expect_exact_derivatives(nlp, x, 0.7, random_vector(rng, rows, 1));
+  }
+}
+
 TEST(ToolChain, AgreesWithTheGroupsKinematics) {
   const JointGroup group = test::fetchlike_whole_body();
   const detail::ToolChain chain(group);

@@ -169,6 +169,54 @@ TEST(OptimizeWholeBody, MeetsBangBangOptimaInOneAndTwoDimensions) {
   EXPECT_LE(r.trajectory->duration(), 1.01 * bang_bang(2, 1, 2));
 }
 
+TEST(OptimizeWholeBody, KeepsMecanumWheelsBetweenWaypoints) {
+  BaseLimits limits;
+  limits.linear_velocity = 0.9;
+  limits.angular_velocity = 2;
+  limits.wheel_velocity = 0.5;
+  limits.wheel_separation = 0.4;
+  limits.wheelbase = 0.5;
+  const JointGroup group = test::fetchlike_whole_body(BaseKind::omni, limits);
+  const auto drive = [&](double theta, double turn) {
+    VectorXd goal = VectorXd::Zero(10), start = goal;
+    start[2] = theta;
+    goal.head<3>() << 3, 0, theta + turn;
+    const WholeBodyProblem problem = between(group, start, goal, {34});
+    return optimize_whole_body(problem, straight(problem, {start, goal}, 0.3));
+  };
+  // Straight: 3 m at 0.5 m/s ahead, at 0.5 / sqrt(2) m/s across, if it may not turn on its way.
+  limits.angular_velocity = 1e-3;
+  const JointGroup stiff = test::fetchlike_whole_body(BaseKind::omni, limits);
+  VectorXd across = VectorXd::Zero(10), end = across;
+  across[2] = end[2] = M_PI / 4;
+  end[0] = 3;
+  const WholeBodyProblem problem = between(stiff, across, end, {34});
+  const WholeBodyResult slow = optimize_whole_body(problem, straight(problem, {across, end}, 0.3));
+  ASSERT_EQ(slow.outcome, Outcome::solved) << slow.message;
+  const double expected = bang_bang(3, 0.5 / std::sqrt(2.0), 0.5);
+  EXPECT_GE(slow.trajectory->duration(), 0.99 * expected);  // turned by up to 4 mrad
+  EXPECT_LE(slow.trajectory->duration(), 1.01 * expected);
+  const WholeBodyResult ahead = drive(0, 0);
+  ASSERT_EQ(ahead.outcome, Outcome::solved) << ahead.message;
+  EXPECT_GE(ahead.trajectory->duration(), bang_bang(3, 0.5, 0.5) - 1e-6);
+  EXPECT_LE(ahead.trajectory->duration(), 1.02 * bang_bang(3, 0.5, 0.5));
+  // Turning by two right angles: rims from positions alone, a hundred times finer than waypoints.
+  const WholeBodyResult turning = drive(0.3, M_PI);
+  ASSERT_EQ(turning.outcome, Outcome::solved) << turning.message;
+  EXPECT_TRUE(violation(turning, "wheel speed").kept());
+  const JointTrajectory fine = turning.trajectory->sampled(99);
+  double most = 0;
+  for (std::size_t i = 1; i < fine.times.size(); ++i) {
+    const VectorXd rate = (fine.positions[i] - fine.positions[i - 1]) / (fine.times[i] - fine.times[i - 1]);
+    const double theta = 0.5 * (fine.positions[i][2] + fine.positions[i - 1][2]);
+    const double c = std::cos(theta), s = std::sin(theta);
+    most = std::max(
+        most, std::abs(c * rate[0] + s * rate[1]) + std::abs(c * rate[1] - s * rate[0]) + 0.45 * std::abs(rate[2]));
+  }
+  EXPECT_LE(most, 0.5 + 1e-5);
+  EXPECT_GE(most, 0.49);
+}
+
 TEST(OptimizeWholeBody, PassesAPointWithoutStopping) {
   // Out to 1 and back to 0: the joint turns round at the task, where its speed is 0 anyway; over 0 -> 1 -> 2 it is not.
   const WholeBodyProblem plain = between(sliders(1), vec({0}), vec({2}), {17, 17});

@@ -76,7 +76,51 @@ TEST(DriveByCheck, LimitsOfBaseAndWheels) {
   options.base = mmgrasp::BaseKind::diff_drive;
   options.base_limits.wheel_velocity = 0.4;  // the base comes at 0.45 m/s
   plan.robot = mmgrasp::source_of(mmgrasp::Robot::from_strings(urdf(), srdf(), options));
-  EXPECT_TRUE(codes_of(plan).count("base-limit"));
+  EXPECT_EQ(codes_of(plan), Codes{"wheel-limit"});
+}
+
+/// The plan's robot on four Mecanum wheels whose rims run at `rim`.
+void put_on_mecanum(PlanToCheck& plan, double rim) {
+  mmgrasp::RobotOptions options;
+  options.base = mmgrasp::BaseKind::omni;
+  options.base_limits.wheel_velocity = rim;
+  options.base_limits.wheel_separation = 0.4;
+  options.base_limits.wheelbase = 0.5;
+  plan.robot = mmgrasp::source_of(mmgrasp::Robot::from_strings(urdf(), srdf(), options));
+}
+
+TEST(DriveByCheck, MecanumWheelsThatTurnTooFast) {
+  // Straight ahead all four run at the base's speed, 1.5 times the mean of 1.2 m in 4 s.
+  PlanToCheck plan = passing_plan();
+  put_on_mecanum(plan, 0.45);
+  EXPECT_EQ(codes_of(plan), Codes{});
+  PlanToCheck faster = passing_plan(1, 1 / 1.01);
+  put_on_mecanum(faster, 0.45);
+  EXPECT_EQ(codes_of(faster), Codes{"wheel-limit"});
+}
+
+TEST(DriveByCheck, MecanumWheelsOfABaseThatDrivesAndTurns) {
+  // At 0.3 m/s along x, turning at 0.5 rad/s: at 45 degrees, which lies between two samples, the fastest rim runs at
+  // 0.3 sqrt(2) + 0.5 x 0.45 m/s.
+  PlanToCheck plan = passing_plan();
+  CheckedMotion& m = plan.drive_by[0].motion;
+  m.times.clear();
+  m.positions.clear();
+  m.velocities.clear();
+  const double rate = 0.5, end = M_PI / 2 / rate;
+  for (int i = 0; i <= 5; ++i) {
+    const double t = end * i / 5;
+    VectorXd v = VectorXd::Zero(8);
+    v.head<3>() << 0.3, 0, rate;
+    m.times.push_back(t);
+    m.positions.push_back(row(0, plan.home) + t * v);
+    m.velocities.push_back(v);
+  }
+  const double fastest = 0.3 * std::sqrt(2.0) + rate * 0.45;
+  put_on_mecanum(plan, fastest);
+  EXPECT_FALSE(codes_of(plan).count("wheel-limit"));
+  put_on_mecanum(plan, fastest / 1.01);
+  EXPECT_TRUE(codes_of(plan).count("wheel-limit"));
 }
 
 TEST(DriveByCheck, ABaseThatDoesNotGoWhereItsVelocitiesLead) {

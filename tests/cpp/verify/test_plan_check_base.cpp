@@ -274,6 +274,32 @@ TEST(PlanCheckRoute, LegThatEndsElsewhere) {
   EXPECT_EQ(codes_of(plan), Codes{"route-ends"});
 }
 
+TEST(PlanCheckFigures, DrivesOfMecanumWheelsTakeTheirTime) {
+  PlanToCheck plan = good_plan();
+  mmgrasp::RobotOptions options;
+  options.base = mmgrasp::BaseKind::omni;
+  options.base_limits.wheel_velocity = 0.4;
+  options.base_limits.wheel_separation = 0.4;
+  options.base_limits.wheelbase = 0.5;
+  plan.robot = mmgrasp::source_of(mmgrasp::Robot::from_strings(urdf(), srdf(), options));
+  const Eigen::Vector3d a = plan.stops[0].pose, b = plan.stops[1].pose;
+  plan.route[1] = {a, 0.5 * (a + b) + Eigen::Vector3d(0, 0, M_PI / 2), b};
+  // 1.4 m ahead; twice 1.5 m from aside to ahead and back, by 45 degrees, where the fastest rim has sqrt(2) of it.
+  const mmgrasp::BaseLimits& limits = options.base_limits;
+  const double ahead = 1.4 / 0.4 + 0.4 / limits.linear_acceleration;
+  const double top = 0.4 / (1.5 * std::sqrt(2.0) + 0.45 * M_PI / 2);  // of the piece, [1/s]
+  const double piece =
+      1 / top + top * std::max(1.5 / limits.linear_acceleration, M_PI / 2 / limits.angular_acceleration);
+  plan.leg_values = {{1.4, 0, ahead}, {3, M_PI, 2 * piece}, {1.4, 0, ahead}};
+  EXPECT_EQ(codes_of(plan), Codes{});
+  for (CheckedLegValues& leg : plan.leg_values) {
+    const double right = leg.duration;
+    leg.duration /= 1.01;
+    EXPECT_EQ(codes_of(plan), Codes{"route-values"});
+    leg.duration = right;
+  }
+}
+
 TEST(PlanCheckFigures, WhatDescribesMustNotLie) {
   PlanToCheck good = good_plan();
   // 1.4 m; 3 m with two quarter turns; 1.4 m, each piece from rest to rest at full speed.

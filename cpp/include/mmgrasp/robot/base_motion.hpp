@@ -20,6 +20,17 @@ struct MMGRASP_EXPORT WheelSpeeds {
 MMGRASP_EXPORT WheelSpeeds wheel_speeds(double v, double omega, double wheel_separation);
 MMGRASP_EXPORT Eigen::Vector3d platform_velocity(const WheelSpeeds& wheels, double wheel_separation);
 
+/// Rim speeds of all driven wheels are these rows times the platform velocity (v_x, v_y, omega), and wheel_velocity
+/// bounds each: v_x -+ omega W / 2 of a diff-drive (left, right); v_x -+ v_y -+ omega (W + B) / 2 of Mecanum wheels
+/// with rollers at 45 degrees (front left, front right, rear left, rear right), B the wheelbase. No rows where no wheel
+/// sets a limit.
+using WheelRows = Eigen::Matrix<double, Eigen::Dynamic, 3>;
+MMGRASP_EXPORT WheelRows wheel_rows(BaseKind kind, const BaseLimits& limits);
+
+/// The most that a rim runs [m] per share of a straight way (x, y, theta), driven and turned at once from heading
+/// `theta`: the fastest wheel at the heading on the way that asks the most of it. 0 without rows.
+MMGRASP_EXPORT double largest_rim_travel(const WheelRows& rows, double theta, const Eigen::Vector3d& way);
+
 /// Largest factor in [0, 1] by which a platform velocity must be scaled to keep every limit of the base kind: speed,
 /// turning, wheels. A diff-drive cannot move sideways: a v_y beyond 1e-9 of the rest gives 0, as does any motion of a
 /// fixed base. Every function here throws InvalidInput for numbers that are not finite and separations that are not

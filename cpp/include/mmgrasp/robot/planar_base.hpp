@@ -21,9 +21,12 @@ struct MMGRASP_EXPORT BaseLimits {
   double linear_acceleration = 0.5;   ///< [m/s^2], > 0
   double angular_acceleration = 1.0;  ///< [rad/s^2], > 0
   double workspace = 100.0;           ///< x and y lie in [-workspace, workspace] [m], > 0
-  /// Fastest a driven wheel's rim may go [m/s], > 0; infinite: wheels set no limit of their own. Diff-drive only.
+  /// Fastest a driven wheel's rim may go [m/s], > 0; infinite: wheels set no limit of their own.
   double wheel_velocity = std::numeric_limits<double>::infinity();
-  double wheel_separation = 0.5;  ///< Between the two driven wheels [m], > 0 (P1 4.11). Diff-drive only.
+  double wheel_separation = 0.5;  ///< Between left and right wheels [m], > 0 (P1 4.11).
+  /// Between front and rear ones [m], >= 0. An omni base with a positive one has four Mecanum wheels, which
+  /// wheel_velocity bounds; with 0 its wheels set no limit. A diff-drive has none.
+  double wheelbase = 0;
   void check() const;
 };
 

@@ -49,8 +49,8 @@ struct MMGRASP_EXPORT PlanCheckOptions {
 ///   `release-outside`, `release-tilted`, `release-height`;
 /// - a motion in passing, besides those of arm motions: `drive-by-pick` (from home and not the first of its stop,
 ///   from a release that is none, twice, unknown),
-///   `closing-time` (outside the motion, or faster than the fingers), `base-limit` (velocity or acceleration of base or
-///   wheels), `base-off-course` (where its velocities do not lead);
+///   `closing-time` (outside the motion, or faster than the fingers), `base-limit` (velocity or acceleration of the
+///   base), `wheel-limit` (rims of its wheels), `base-off-course` (where its velocities do not lead);
 /// - the route: `route-legs` (their number), `route-ends`, `route-not-driveable`, `route-collision`, `too-long`,
 ///   `unloading` (at a pick where it cannot be), `capacity` (more parts in the bin than it takes);
 /// - stops: `region-malformed`, `region-missing`, `region-too-small`, `stop-heading`, `stop-radius`,

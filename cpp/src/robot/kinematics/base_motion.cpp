@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/limits.hpp"
 
@@ -60,6 +61,42 @@ Eigen::Vector3d platform_velocity(const WheelSpeeds& wheels, double wheel_separa
   return {0.5 * (wheels.left + wheels.right), 0, (wheels.right - wheels.left) / wheel_separation};
 }
 
+WheelRows wheel_rows(BaseKind kind, const BaseLimits& limits) {
+  if (!std::isfinite(limits.wheel_velocity)) return WheelRows(0, 3);
+  if (kind == BaseKind::diff_drive) {
+    const double lever = 0.5 * limits.wheel_separation;
+    WheelRows rows(2, 3);
+    rows << 1, 0, -lever, 1, 0, lever;
+    return rows;
+  }
+  if (kind != BaseKind::omni || limits.wheelbase <= 0) return WheelRows(0, 3);
+  const double lever = 0.5 * (limits.wheel_separation + limits.wheelbase);
+  WheelRows rows(4, 3);
+  rows << 1, -1, -lever, 1, 1, lever, 1, 1, -lever, 1, -1, lever;
+  return rows;
+}
+
+double largest_rim_travel(const WheelRows& rows, double theta, const Eigen::Vector3d& way) {
+  check_finite(theta, "theta");
+  check_velocity(way, "way");
+  const double length = way.head<2>().norm(), last = theta + way.z();
+  double most = 0;
+  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+    // The rim is a sinusoid of the heading about what turning asks: it is extreme at both ends, or where that peaks.
+    const double amplitude = length * rows.row(i).head<2>().norm(), turning = rows(i, 2) * way.z();
+    const double peak = std::atan2(way.y(), way.x()) - std::atan2(rows(i, 1), rows(i, 0));
+    for (const double heading : {theta, last})
+      most = std::max(most, std::abs(amplitude * std::cos(heading - peak) + turning));
+    const double first = std::ceil((std::min(theta, last) - peak) / detail::kPi);  // in halves of a turn from the peak
+    for (const double half : {first, first + 1}) {
+      if (peak + half * detail::kPi > std::max(theta, last)) break;
+      const double sign = std::fmod(half, 2) == 0 ? 1 : -1;
+      most = std::max(most, std::abs(sign * amplitude + turning));
+    }
+  }
+  return most;
+}
+
 double velocity_scale(BaseKind kind, const BaseLimits& limits, const Eigen::Vector3d& platform_velocity) {
   limits.check();
   check_velocity(platform_velocity, "platform_velocity");
@@ -77,6 +114,8 @@ double velocity_scale(BaseKind kind, const BaseLimits& limits, const Eigen::Vect
     if (std::abs(platform_velocity.y()) > kSideways * rest) return 0;
     const WheelSpeeds wheels = wheel_speeds(platform_velocity.x(), platform_velocity.z(), limits.wheel_separation);
     keep(std::max(std::abs(wheels.left), std::abs(wheels.right)), limits.wheel_velocity);
+  } else if (const WheelRows rows = wheel_rows(kind, limits); rows.rows() > 0) {
+    keep((rows * platform_velocity).cwiseAbs().maxCoeff(), limits.wheel_velocity);
   }
   return scale;
 }

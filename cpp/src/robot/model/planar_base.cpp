@@ -36,6 +36,8 @@ void BaseLimits::check() const {
   positive(workspace, "workspace");
   require(wheel_velocity > 0, "base_limits.wheel_velocity", wheel_velocity, "must be positive (infinite: no limit)");
   positive(wheel_separation, "wheel_separation");
+  require(wheelbase >= 0 && std::isfinite(wheelbase), "base_limits.wheelbase", wheelbase,
+          "must not be negative (0: no Mecanum wheels)");
 }
 
 }  // namespace mmgrasp

@@ -68,6 +68,7 @@ std::string Robot::hash() const {
   hasher.add(limits.linear_velocity).add(limits.angular_velocity).add(limits.linear_acceleration);
   hasher.add(limits.angular_acceleration).add(limits.workspace);
   hasher.add(limits.wheel_velocity).add(limits.wheel_separation);
+  if (limits.wheelbase > 0) hasher.add(limits.wheelbase);
   for (const Link& link : data_->links) add_link(hasher, link);
   for (const Joint& joint : data_->joints) add_joint(hasher, joint);
   // Only which pairs are off matters to a result, not why.

@@ -13,15 +13,19 @@ namespace {
 
 constexpr double kMostSamples = 1e7;  // Of one drive.
 
-/// The share of a straight piece that is driven, from 0 to 1: as fast as both way and turn allow.
+/// The share of a straight piece that is driven, from 0 to 1: as fast as both way and turn allow, and the wheels of a
+/// base that does both at once.
 class Profile {
  public:
-  Profile(const Eigen::Vector3d& way, const BaseLimits& limits) {
+  Profile(const Eigen::Vector3d& from, const Eigen::Vector3d& to, BaseKind base, const BaseLimits& limits) {
+    const Eigen::Vector3d way = to - from;
     const double driven = way.head<2>().norm(), turned = std::abs(way.z());
     if (driven == 0 && turned == 0) return;
     const auto share = [](double limit, double size) { return size > 0 ? limit / size : detail::kInfinity; };
     acceleration_ = std::min(share(limits.linear_acceleration, driven), share(limits.angular_acceleration, turned));
-    const double top = std::min(share(limits.linear_velocity, driven), share(limits.angular_velocity, turned));
+    double top = std::min(share(limits.linear_velocity, driven), share(limits.angular_velocity, turned));
+    if (base == BaseKind::omni)
+      top = std::min(top, share(limits.wheel_velocity, largest_rim_travel(wheel_rows(base, limits), from.z(), way)));
     const bool triangle = acceleration_ <= top * top;
     ramp_ = triangle ? std::sqrt(1 / acceleration_) : top / acceleration_;
     duration_ = triangle ? 2 * ramp_ : 1 / top + ramp_;
@@ -46,7 +50,7 @@ double base_path_duration(const BasePath& path, BaseKind base, const BaseLimits&
   const BaseLimits limits = driving_limits(base, base_limits);
   double duration = 0;
   for (std::size_t i = 1; i < path.poses.size(); ++i)
-    duration += Profile(path.poses[i] - path.poses[i - 1], limits).duration();
+    duration += Profile(path.poses[i - 1], path.poses[i], base, limits).duration();
   return duration;
 }
 
@@ -69,7 +73,7 @@ RobotMotion base_path_motion(const BasePath& path, BaseKind base, const BaseLimi
   add(0, path.poses[0], Eigen::Vector3d::Zero());
   for (std::size_t i = 1; i < path.poses.size(); ++i) {
     const Eigen::Vector3d from = path.poses[i - 1], way = path.poses[i] - from;
-    const Profile profile(way, limits);
+    const Profile profile(from, path.poses[i], base, limits);
     const double begin = motion.duration(), T = profile.duration();
     double before = 0;
     for (const double until : {profile.ramp(), T - profile.ramp(), T}) {

@@ -36,6 +36,7 @@ std::string limits_json(const BaseLimits& limits) {
                                      {"workspace", json_number(limits.workspace)}};
   if (std::isfinite(limits.wheel_velocity)) members.emplace_back("wheel_velocity", json_number(limits.wheel_velocity));
   members.emplace_back("wheel_separation", json_number(limits.wheel_separation));
+  if (limits.wheelbase > 0) members.emplace_back("wheelbase", json_number(limits.wheelbase));
   return json_object(members);
 }
 

@@ -13,6 +13,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kSlack = 0.01;      // Share by which limits may be exceeded.
+constexpr double kRimSlack = 2e-3;   // The same of the wheels, which no tracker can ask for more.
 constexpr double kOffCourse = 1e-3;  // Largest error after the whole motion [m], [rad].
 constexpr double kSideways = 1e-3;   // [m/s]
 
@@ -46,9 +47,22 @@ Vector3d driven(BaseKind base, Vector3d pose, const Vector3d& from, const Vector
   return pose;
 }
 
+/// The fastest wheel's rim, of two driven wheels on one axle or of four Mecanum ones; 0 where wheels set no limit.
+double rim_speed(const PlanToCheck& plan, double theta, const Vector3d& drive) {
+  const BaseLimits& limits = plan.robot.base_limits;
+  if (plan.robot.base == BaseKind::diff_drive)
+    return std::abs(drive.x()) + 0.5 * limits.wheel_separation * std::abs(drive.z());
+  if (plan.robot.base != BaseKind::omni || limits.wheelbase <= 0) return 0;
+  const double c = std::cos(theta), s = std::sin(theta);
+  return std::abs(c * drive.x() + s * drive.y()) + std::abs(c * drive.y() - s * drive.x()) +
+         0.5 * (limits.wheel_separation + limits.wheelbase) * std::abs(drive.z());
+}
+
 struct Limit {
   const char* what;
   double limit;
+  const char* code = "base-limit";
+  double slack = kSlack;
   double value = 0, time = 0;
 
   void see(double now, double at) {
@@ -61,25 +75,28 @@ struct Limit {
 void check_limits(const PlanToCheck& plan, const CheckedMotion& motion, const std::vector<Vector3d>& drive,
                   const std::string& where, Faults& faults) {
   const BaseLimits& limits = plan.robot.base_limits;
-  const bool diff_drive = plan.robot.base == BaseKind::diff_drive;
   Limit speed{"speed [m/s]", limits.linear_velocity}, turning{"turning rate [rad/s]", limits.angular_velocity};
-  Limit wheel{"wheel speed [m/s]", limits.wheel_velocity};
+  Limit wheel{"wheel speed [m/s]", limits.wheel_velocity, "wheel-limit", kRimSlack};
   Limit gain{"acceleration [m/s^2]", limits.linear_acceleration};
   Limit spin{"angular acceleration [rad/s^2]", limits.angular_acceleration};
   for (std::size_t i = 0; i < drive.size(); ++i) {
     const double t = motion.times[i];
     speed.see(drive[i].head<2>().norm(), t);
     turning.see(drive[i].z(), t);
-    const double rim = 0.5 * limits.wheel_separation * std::abs(drive[i].z());
-    if (diff_drive) wheel.see(std::abs(drive[i].x()) + rim, t);
+    wheel.see(rim_speed(plan, motion.positions[i][2], drive[i]), t);
     if (i == 0) continue;
     const double h = motion.times[i] - motion.times[i - 1];
+    for (const double share : {0.25, 0.5, 0.75}) {  // a turning base's own axes turn under its velocity
+      const Vector3d between = (1 - share) * drive[i - 1] + share * drive[i];
+      const double theta = motion.positions[i - 1][2] + 0.5 * h * share * (drive[i - 1] + between).z();
+      wheel.see(rim_speed(plan, theta, between), t - (1 - share) * h);
+    }
     gain.see((drive[i] - drive[i - 1]).head<2>().norm() / h, t);
     spin.see((drive[i] - drive[i - 1]).z() / h, t);
   }
   for (const Limit& l : {speed, turning, wheel, gain, spin}) {
-    if (l.value <= (1 + kSlack) * l.limit) continue;
-    faults.push_back({"base-limit", where + ", t = " + text(l.time) + " s",
+    if (l.value <= (1 + l.slack) * l.limit) continue;
+    faults.push_back({l.code, where + ", t = " + text(l.time) + " s",
                       std::string(l.what) + " of the base is " + text(l.value) + ", the limit " + text(l.limit)});
   }
 }

@@ -26,13 +26,15 @@ class Drive:
     reason: str
     sure: bool
     wheels: list[str]  # joints
-    separation: float | None  # of the two wheels of a diff_drive [m]
+    separation: float | None  # of the two wheels of a diff_drive, of left and right Mecanum wheels [m]
+    wheelbase: float | None = None  # of four Mecanum wheels [m]
 
 
 def read_drive(robot: Robot, urdf_text: str, base: str | None) -> Drive:
     """The kind of base, by its wheels or as stated. InvalidInput where neither tells."""
     wheels = find_wheels(robot)
-    if base is not None:
+    mecanum = _mecanum(wheels) if base in (None, "omni") and "mecanum" in urdf_text.lower() else None
+    if base is not None and mecanum is None:
         return Drive(base, "as asked for", True, list(wheels), _separation(wheels) if base == "diff_drive" else None)
     if not wheels:
         raise InvalidInput(
@@ -43,6 +45,9 @@ def read_drive(robot: Robot, urdf_text: str, base: str | None) -> Drive:
     axes = np.array([wheel.axis for wheel in wheels.values()])
     parallel = (np.abs(axes @ axes[0]) > _PARALLEL).all()
     count = f"{len(wheels)} wheels"
+    if mecanum is not None:
+        reason = f'{count}, and its file says "mecanum"' if base is None else "as asked for"
+        return Drive("omni", reason, True, list(wheels), *mecanum)
     if all(wheel.steered for wheel in wheels.values()):
         return Drive("omni", f"{count}, all of which are steered", True, list(wheels), None)
     if not parallel:
@@ -105,6 +110,22 @@ def _separation(wheels: dict[str, _Wheel]) -> float | None:
         return None
     first, second = wheels.values()
     return float(abs(first.axis @ (second.middle - first.middle)))
+
+
+def _mecanum(wheels: dict[str, _Wheel]) -> tuple[float, float] | None:
+    """Track and wheelbase [m] of four wheels at the corners of a rectangle, with parallel axles that nothing steers."""
+    if len(wheels) != 4 or any(wheel.steered for wheel in wheels.values()):
+        return None
+    axis = next(iter(wheels.values())).axis
+    if any(abs(wheel.axis @ axis) <= _PARALLEL for wheel in wheels.values()):
+        return None
+    roll = np.cross(axis, [0, 0, 1])
+    corners = np.array([[axis @ wheel.middle, roll @ wheel.middle] for wheel in wheels.values()])
+    offsets = corners - corners.mean(axis=0)
+    sides = 2 * np.abs(offsets).mean(axis=0)
+    if len(np.unique(offsets > 0, axis=0)) != 4 or np.abs(2 * np.abs(offsets) - sides).max() > _SAME_AXLE:
+        return None
+    return float(sides[0]), float(sides[1])
 
 
 def wheel_speed(robot: Robot, wheels: list[str]) -> float | None:

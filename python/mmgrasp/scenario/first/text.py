@@ -117,6 +117,8 @@ def _base_limits(given: FirstRobot) -> dict[str, float]:
     speed = wheel_speed(given.robot, drive.wheels)
     if speed is not None:
         limits["linear_velocity"] = min(limits["linear_velocity"], round(speed, 3))
-    if drive.base == "diff_drive" and drive.separation is not None and speed is not None:
+    if drive.separation is not None and speed is not None:
         limits |= {"wheel_velocity": round(speed, 3), "wheel_separation": round(drive.separation, 4)}
+        if drive.wheelbase is not None:
+            limits["wheelbase"] = round(drive.wheelbase, 4)
     return limits

@@ -48,7 +48,11 @@ py::array plain_array(const py::handle& value, const std::string& name) {
                        "is not known with array.filled(numpy.nan)");
   }
   py::array array = py::array::ensure(value);
-  if (!array) PyErr_Clear();
+  if (!array) {
+    PyErr_Clear();
+  } else if (!(array.flags() & py::detail::npy_api::NPY_ARRAY_ALIGNED_)) {
+    array = array.attr("copy")();  // Views into bytes at odd places hold numbers where C++ may not read any.
+  }
   return array;
 }
 

@@ -89,6 +89,15 @@ def test_numbers_have_bounds_and_keep_them(command: str, action: argparse.Action
             number(further)
 
 
+def test_every_negative_number_is_a_value(capsys: pytest.CaptureFixture[str]) -> None:
+    given = build_parser().parse_args(["arrive", "plan.json", "--stop", "1", "--pose", "-1e-3", "-2.E+1", "-.5"])
+    assert given.pose == [-0.001, -20.0, -0.5]
+    for text in ("-inf", "-NaN", "-1e999"):
+        with pytest.raises(SystemExit):
+            build_parser().parse_args(["arrive", "plan.json", "--stop", "1", "--pose", "0", text, "0"])
+        assert f"--pose: {text}" in capsys.readouterr().err.replace("'", ""), text
+
+
 @pytest.mark.parametrize(("command", "action"), options(), ids=lambda v: v if isinstance(v, str) else v.dest)
 def test_wrong_values_are_refused(command: str, action: argparse.Action, capsys: pytest.CaptureFixture[str]) -> None:
     parser = argparse.ArgumentParser(prog=command)

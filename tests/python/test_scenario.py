@@ -6,7 +6,7 @@ import copy
 import json
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
@@ -330,16 +330,35 @@ def test_a_file_of_an_older_version_says_what_its_keys_are_called_now(
         mg.load_scenario(write(old))
 
 
+def write_stl(path: Path, mesh: mg.Mesh, triangles: Iterable[Any]) -> None:
+    rows = ""
+    for triangle in triangles:
+        corners = "".join("vertex {} {} {}\n".format(*mesh.vertices[i]) for i in triangle)
+        rows += f"facet normal 0 0 0\nouter loop\n{corners}endloop\nendfacet\n"
+    path.write_text(f"solid body\n{rows}endsolid body\n")
+
+
+def test_a_surface_that_is_no_solid_is_told_at_its_line(
+    small: dict[str, Any], write: Callable[..., Path], tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    box = mg.LinkShape(mg.Box([0.3, 0.3, 0.3])).surface()
+    raw = copy.deepcopy(small)
+    for name, triangles in (("closed", box.triangles), ("open", box.triangles[:-1])):
+        write_stl(tmp_path / f"{name}.stl", box, triangles)
+        raw["obstacles"].append({"name": name, "mesh": f"{name}.stl", "pose": {"xyz": [-3.0, 0.0, 0.15]}})
+    path = write(raw)
+    mg.load_scenario(path)
+    line = next(i for i, text in enumerate(path.read_text().splitlines(), 1) if "open.stl" in text)
+    place = f"{path}:{line}: obstacles[{len(raw['obstacles']) - 1}].mesh: "
+    assert caplog.messages == [place + "its surface is not closed: it is no solid, and a body wholly behind it does not touch it"]
+
+
 def test_meshes_may_be_simpler_within_a_tolerance(
     small: dict[str, Any], write: Callable[..., Path], tmp_path: Path
 ) -> None:
     """A column of 96 triangles on the robot: planned for as a cylinder that holds it, and verified by its mesh."""
     column = mg.LinkShape(mg.Cylinder(0.05, 0.3)).surface(segments=48)
-    rows = ""
-    for triangle in column.triangles:
-        corners = "".join("vertex {} {} {}\n".format(*column.vertices[i]) for i in triangle)
-        rows += f"facet normal 0 0 0\nouter loop\n{corners}endloop\nendfacet\n"
-    (tmp_path / "column.stl").write_text(f"solid column\n{rows}endsolid column\n")
+    write_stl(tmp_path / "column.stl", column, column.triangles)
     mesh = "<collision><geometry><mesh filename='column.stl'/></geometry></collision>"
     (tmp_path / "column.urdf").write_text(f"<robot name='column'><link name='column'>{mesh}</link></robot>")
     mount: dict[str, Any] = {"urdf": str(tmp_path / "column.urdf"), "parent_link": "base_link", "prefix": "c_"}

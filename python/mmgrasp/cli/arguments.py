@@ -17,10 +17,14 @@ if TYPE_CHECKING:  # argparse has no public name for what add_subparsers gives
 
 
 class _Parser(argparse.ArgumentParser):
-    """An argument parser whose options may not be abbreviated: a script keeps its meaning when options are added."""
+    """An argument parser whose options may not be abbreviated: a script keeps its meaning when options are added.
+
+    Every negative number is a value: argparse itself takes -0.001 for one but -1e-3 and -inf for unknown options.
+    """
 
     def __init__(self, **keywords: Any) -> None:
         super().__init__(allow_abbrev=False, **keywords)
+        self._negative_number_matcher = re.compile(r"-(\d+\.?\d*|\.\d+)(e[-+]?\d+)?$|-(inf|infinity|nan)$", re.IGNORECASE)
 
 
 def build_parser() -> argparse.ArgumentParser:

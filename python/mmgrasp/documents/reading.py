@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import difflib
 import json
+import logging
 import math
 import reprlib
 import unicodedata
@@ -104,6 +105,10 @@ class Node:
         """Raises InvalidInput: place, name, value (of a mapping the reader has its place) and the rule that it breaks."""
         shown = "" if isinstance(self.raw, Mapping) else f" = {_SHORT.repr(self.raw)}"
         raise InvalidInput(printable(f"{self.place}: {self.name}{shown}: {rule}"))
+
+    def warn(self, text: str) -> None:
+        """Logs what is legal but may surprise, with the place and name of this value."""
+        logging.getLogger("mmgrasp").warning("%s", printable(f"{self.place}: {self.name}: {text}"))
 
     @contextlib.contextmanager
     def blamed(self) -> Iterator[None]:

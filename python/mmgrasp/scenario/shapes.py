@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from .. import _core
-from .._core import Box, Capsule, Cylinder, InvalidInput, LinkShape, Sphere
+from .._core import Box, Capsule, Cylinder, InvalidInput, LinkShape, Mesh, Sphere
 from .._files import sha256_of
 from ..documents.reading import Node
 
@@ -55,9 +55,12 @@ def _one(node: Node, find_file: Callable[[Node], Path], placed: bool) -> LinkSha
         )
     path = find_file(value).resolve()
     try:
-        return LinkShape.mesh(path, scale, pose)
+        found = LinkShape.mesh(path, scale, pose)
     except _core.Error as error:
         value.fail(str(error))
+    if isinstance(found.shape, Mesh) and not found.shape.closed:
+        value.warn("its surface is not closed: it is no solid, and a body wholly behind it does not touch it")
+    return found
 
 
 def pose_to_dict(T: np.ndarray) -> dict[str, list[float]]:

@@ -404,7 +404,7 @@ TEST(TimeParameterizeFree, ChecksTooFineToWaitForCanBeStopped) {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
     monitor.stop.stop();
   });
-  EXPECT_TRUE(time_parameterize_free(checker, {{vec({0.4, -0.8}), vec({0.4, 0.3})}}, {}, 1e-12, monitor).times.empty());
+  EXPECT_TRUE(time_parameterize_free(checker, {{vec({0.4, -0.8}), vec({0.4, 0.3})}}, {}, 1e-9, monitor).times.empty());
   stopper.join();
 }
 

@@ -120,7 +120,7 @@ void ManipulationProblem::check() const {
 void PrmStarMgOptions::check() const {
   require_count(batch, "batch", 0, 10'000'000);
   require(max_vertices >= 0 && max_vertices <= 10'000'000, "max_vertices", max_vertices, "must be in [0, 10000000]");
-  require_count(refinements, "refinements", 0, 1000);
+  require_count(refinements, "refinements", 0);
   roadmap.check();
 }
 

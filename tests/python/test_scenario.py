@@ -339,14 +339,15 @@ def write_stl(path: Path, mesh: mg.Mesh, triangles: Iterable[Any]) -> None:
 
 
 def test_a_surface_that_is_no_solid_is_told_at_its_line(
-    small: dict[str, Any], write: Callable[..., Path], tmp_path: Path, caplog: pytest.LogCaptureFixture
+    small: dict[str, Any], tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     box = mg.LinkShape(mg.Box([0.3, 0.3, 0.3])).surface()
     raw = copy.deepcopy(small)
     for name, triangles in (("closed", box.triangles), ("open", box.triangles[:-1])):
         write_stl(tmp_path / f"{name}.stl", box, triangles)
         raw["obstacles"].append({"name": name, "mesh": f"{name}.stl", "pose": {"xyz": [-3.0, 0.0, 0.15]}})
-    path = write(raw)
+    path = tmp_path / "scenario.yaml"
+    path.write_text(yaml.safe_dump(raw, sort_keys=False))
     mg.load_scenario(path)
     line = next(i for i, text in enumerate(path.read_text().splitlines(), 1) if "open.stl" in text)
     place = f"{path}:{line}: obstacles[{len(raw['obstacles']) - 1}].mesh: "

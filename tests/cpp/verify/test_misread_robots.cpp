@@ -27,19 +27,23 @@ std::ostream& operator<<(std::ostream& out, const Misreading& m) {
   return out << m.name;
 }
 
-/// The hand's box as a mesh file, twelve triangles.
-std::string hand_mesh() {
-  static const std::string path = [] {
-    const std::string file = ::testing::TempDir() + "mmgrasp_hand_" + std::to_string(::getpid()) + ".obj";
-    std::ofstream out(file);
+/// The hand's box as a mesh file, twelve triangles; it goes with the process.
+struct HandMesh {
+  const std::string path = ::testing::TempDir() + "mmgrasp_hand_" + std::to_string(::getpid()) + ".obj";
+  HandMesh() {
+    std::ofstream out(path);
     for (double x : {-0.04, 0.04})
       for (double y : {-0.06, 0.06})
         for (double z : {-0.03, 0.03}) out << "v " << x << " " << y << " " << z << "\n";
     out << "f 1 2 4\nf 1 4 3\nf 5 7 8\nf 5 8 6\nf 1 5 6\nf 1 6 2\nf 3 4 8\nf 3 8 7\nf 1 3 7\nf 1 7 5\nf 2 6 8\nf 2 8 "
            "4\n";
-    return file;
-  }();
-  return path;
+  }
+  ~HandMesh() { std::remove(path.c_str()); }
+};
+
+std::string hand_mesh() {
+  static const HandMesh mesh;
+  return mesh.path;
 }
 
 /// The gantry with what some misreadings need: a mesh, and a second shape of the base.

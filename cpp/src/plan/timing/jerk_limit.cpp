@@ -82,11 +82,6 @@ class Cubics {
     const Piece p = piece(t);
     return velocities_[p.i] + p.s / p.h * (2 * p.c2 + 3 * p.s * p.c3);
   }
-  Eigen::VectorXd acceleration(double t) const {
-    if (t <= 0 || t >= duration()) return Eigen::VectorXd::Zero(positions_.front().size());
-    const Piece p = piece(t);
-    return (2 * p.c2 + 6 * p.s * p.c3) / (p.h * p.h);
-  }
 
  private:
   struct Piece {
@@ -110,6 +105,10 @@ class Cubics {
   std::vector<Eigen::VectorXd> positions_, velocities_, integrals_;
 };
 
+bool is_inner_stop(const JointTrajectory& motion, std::size_t i) {
+  return i > 0 && i + 1 < motion.times.size() && motion.velocities[i].lpNorm<Eigen::Infinity>() <= kStopped;
+}
+
 /// The motion with a wait of `wait` seconds at each inner stop.
 JointTrajectory with_waits(const JointTrajectory& motion, double wait, const CancelToken& stop) {
   JointTrajectory out;
@@ -122,30 +121,76 @@ JointTrajectory with_waits(const JointTrajectory& motion, double wait, const Can
       out.velocities.push_back(motion.velocities[i]);
     };
     add();
-    const bool inner = i > 0 && i + 1 < motion.times.size();
-    if (!inner || motion.velocities[i].lpNorm<Eigen::Infinity>() > kStopped) continue;
+    if (!is_inner_stop(motion, i)) continue;
     late += wait;
     add();
   }
   return out;
 }
 
-/// Whether the average over `window` keeps the jerk limits: its jerk is linear between the times at which either end
-/// of the window meets a sample, so that checking both sides of these is enough.
-bool keeps_jerk(const Cubics& motion, double window, const Eigen::VectorXd& jerk_limits, const CancelToken& stop) {
-  const double side = std::min(1e-9 * (motion.duration() + window), 1e-3 * window);
-  const Eigen::ArrayXd bound = window * jerk_limits.array() * (1 + 1e-9);
-  for (const double t : motion.times()) {
-    end_if_stopped(stop);
-    for (const double near : {t - side, t + side}) {
-      const Eigen::ArrayXd here = motion.acceleration(near).array();
-      for (const double far : {near - window, near + window}) {
-        if (((here - motion.acceleration(far).array()).abs() > bound).any()) return false;
+/// What bisection asks of a motion: accelerations alone, with waits at inner stops that become longer or shorter.
+class Accelerations {
+ public:
+  /// Throws TimingStopped.
+  Accelerations(const JointTrajectory& motion, const CancelToken& stop) {
+    const Eigen::Index joints = motion.positions.front().size();
+    const auto stops = static_cast<std::ptrdiff_t>(motion.times.size());
+    begin_.setZero(joints, 2 * stops);
+    slope_.setZero(joints, 2 * stops);
+    for (std::size_t i = 0; i + 1 < motion.times.size(); ++i) {
+      end_if_stopped(stop);
+      if (is_inner_stop(motion, i)) lengths_.push_back(kWait);
+      const double h = motion.times[i + 1] - motion.times[i];
+      const Eigen::VectorXd mean = (motion.positions[i + 1] - motion.positions[i]) / h;
+      const auto piece = static_cast<Eigen::Index>(lengths_.size());
+      begin_.col(piece) = (6 * mean - 4 * motion.velocities[i] - 2 * motion.velocities[i + 1]) / h;
+      slope_.col(piece) = 6 * (motion.velocities[i] + motion.velocities[i + 1] - 2 * mean) / (h * h);
+      lengths_.push_back(h);
+    }
+    times_.resize(lengths_.size() + 1);
+  }
+
+  /// Whether the average over `window` keeps the jerk limits, with waits as long as it: its jerk is linear between the
+  /// times at which either end of the window meets a sample, so that checking both sides of these is enough.
+  bool keep_jerk(double window, const Eigen::VectorXd& jerk_limits, const CancelToken& stop) {
+    times_.front() = 0;
+    for (std::size_t i = 0; i < lengths_.size(); ++i)
+      times_[i + 1] = times_[i] + (lengths_[i] == kWait ? window : lengths_[i]);
+    const double side = std::min(1e-9 * (times_.back() + window), 1e-3 * window);
+    const Eigen::ArrayXd bound = window * jerk_limits.array() * (1 + 1e-9);
+    Eigen::ArrayXd here(bound.size()), there(bound.size());
+    std::size_t near_piece = 0, earlier_piece = 0, later_piece = 0;
+    for (const double t : times_) {
+      end_if_stopped(stop);
+      for (const double near : {t - side, t + side}) {
+        at(near, near_piece, here);
+        at(near - window, earlier_piece, there);
+        if (((here - there).abs() > bound).any()) return false;
+        at(near + window, later_piece, there);
+        if (((here - there).abs() > bound).any()) return false;
       }
     }
+    return true;
   }
-  return true;
-}
+
+ private:
+  static constexpr double kWait = -1;  ///< The length of a piece that is a wait.
+
+  /// The acceleration at `t`, whose piece is sought from `piece` on: that of a time close by.
+  void at(double t, std::size_t& piece, Eigen::ArrayXd& out) const {
+    if (t <= 0 || t >= times_.back()) {
+      out.setZero();
+      return;
+    }
+    while (times_[piece + 1] <= t) ++piece;
+    while (times_[piece] > t) --piece;
+    const auto i = static_cast<Eigen::Index>(piece);
+    out = begin_.col(i).array() + (t - times_[piece]) * slope_.col(i).array();
+  }
+
+  Eigen::MatrixXd begin_, slope_;  ///< A column for each piece: the acceleration at its begin, and its change.
+  std::vector<double> lengths_, times_;
+};
 
 /// Whether samples that are a fixed part of the window apart would be far too many.
 bool is_short(double window, double period) {
@@ -223,15 +268,15 @@ JointTrajectory limit_jerk(const JointTrajectory& motion, const Eigen::VectorXd&
   double least = kShortestWindow, enough = 2 * kShortestWindow;
   for (const auto& a : motion.accelerations)
     enough = std::max(enough, 2.1 * (a.cwiseAbs().cwiseQuotient(jerk_limits)).maxCoeff());
-  const auto cubics = [&](double window) { return Cubics(with_waits(motion, window, stop), stop); };
-  const auto keeps = [&](double window) { return keeps_jerk(cubics(window), window, jerk_limits, stop); };
+  Accelerations accelerations(motion, stop);
+  const auto keeps = [&](double window) { return accelerations.keep_jerk(window, jerk_limits, stop); };
   if (keeps(least)) return motion;
   while (!keeps(enough)) enough *= 1.5;
   for (int i = 0; i < kBisections; ++i) {
     const double middle = 0.5 * (least + enough);
     (keeps(middle) ? enough : least) = middle;
   }
-  const Cubics slow = cubics(enough);
+  const Cubics slow(with_waits(motion, enough, stop), stop);
   const double most = (slow.duration() + enough) / std::min(period, enough / kSamplesPerWindow);
   require(is_short(enough, period) || most <= kMaxSamples, "jerk_limits", jerk_limits.minCoeff(),
           "must be so high that the motion takes at most 1e7 samples");

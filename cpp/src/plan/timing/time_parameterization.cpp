@@ -125,6 +125,7 @@ class TimedPath {
     std::vector<double> deviations = allowed;
     for (;;) {
       const JointTrajectory fast = fastest(detail::BlendedPath(waypoints_, deviations), share);
+      if (!best.times.empty() && fast.duration() >= best.duration()) return;  // Limiting its jerk takes time.
       JointTrajectory trial =
           detail::limit_jerk(fast, velocity_limits_, acceleration_limits_, jerk_limits_, period_, monitor_.stop);
       if (!best.times.empty() && trial.duration() >= best.duration()) return;

@@ -14,7 +14,7 @@
 namespace mmgrasp {
 namespace {
 
-constexpr double kMostPoses = 4e8;  ///< Of all voxels: some 33 bytes each for an arm of seven joints.
+constexpr double kMostPoses = 4e8;  ///< All voxels together: some 33 bytes each for an arm of seven joints.
 
 double steps_along(const CapabilityOptions& options, int axis) {
   return (options.upper[axis] - options.lower[axis]) / options.voxel;

@@ -11,7 +11,7 @@
 namespace mmgrasp {
 namespace {
 
-constexpr double kMostSamples = 1e7;  // Of one drive.
+constexpr double kMostSamples = 1e7;  // One drive has no more.
 
 /// The share of a straight piece that is driven, from 0 to 1: as fast as both way and turn allow, and the wheels of a
 /// base that does both at once.

@@ -123,9 +123,11 @@ def test_robots_that_others_wrote_need_no_edit(data: Path, tmp_path: Path, name:
 
 @pytest.mark.slow
 def test_an_arm_given_by_its_links_takes_parts_in_passing(data: Path, tmp_path: Path) -> None:
+    """All but one: the file's wheels do 0.076 m/s, and of the long way to the first part the motion's few waypoints lose more than is saved."""
     urdf, *options = others_robot(data, "iiwa")
     plan = planned_and_verified(tmp_path, Path(urdf), *options, drive_by=True)
-    assert len(plan["picks"]) == len(plan["drive_by"]["motions"]) == 12
+    assert len(plan["picks"]) == 12
+    assert len(plan["drive_by"]["motions"]) == 11
 
 
 def test_a_link_of_a_mounted_robot_is_told_by_its_own_name(

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import shutil
-import signal
 import subprocess
 import sys
 import time
@@ -171,16 +170,16 @@ def test_ctrl_c_in_a_process_and_on(tmp_path: Path) -> None:
     write_frames(tmp_path / "frames", "seven_scenes", 60)
     out = tmp_path / "map"
     program = (
-        "import sys, mmgrasp.cli.scan as scan\nfrom mmgrasp.cli import main\n"
-        "scan.CHECKPOINT_SECONDS = 0.0\nsys.exit(main(sys.argv[1:]))"
+        "import os, signal, sys, mmgrasp.cli.scan as scan\nfrom mmgrasp.cli import main\n"
+        "scan.CHECKPOINT_SECONDS, check = 0.0, scan._Checkpoints.__call__\n"
+        "def interrupted(checkpoints, frames):\n"
+        "    check(checkpoints, frames)\n"
+        f"    if os.path.exists({str(out / 'progress.json')!r}): os.kill(os.getpid(), signal.SIGINT)\n"
+        "scan._Checkpoints.__call__ = interrupted\nsys.exit(main(sys.argv[1:]))"
     )
     command = [sys.executable, "-c", program, "scan", str(tmp_path / "frames"), "-o", str(out), *OPTIONS]
-    process = subprocess.Popen([*command, "--no-pictures"], stderr=subprocess.PIPE, text=True)
-    until = time.monotonic() + 60
-    while not (out / "progress.json").exists() and time.monotonic() < until:
-        time.sleep(0.002)
-    process.send_signal(signal.SIGINT)
-    error = process.communicate(timeout=60)[1]
+    process = subprocess.run([*command, "--no-pictures"], stderr=subprocess.PIPE, text=True, timeout=120)
+    error = process.stderr
     assert process.returncode == 130 and "Traceback" not in error
     (partial,) = out.glob("partial_*.sdf")
     done = json.loads((out / "progress.json").read_text())

@@ -116,7 +116,7 @@ def run_motion_bench(
         check_name("robot", name, ROBOTS)
     if "planner" in options:
         check_name("planner", options["planner"], planner_names())
-    options = {"time_limit": 10.0, "max_iterations": 2**31 - 1, "workspace_step": 0.005} | options
+    options = {"time_limit": 10.0, "max_iterations": 2_000_000_000, "workspace_step": 0.005} | options
     results = []
     for done, (robot_name, name) in enumerate(itertools.product(robots, sets)):
         folder = data / f"robots/{robot_name}_vamp/{robot_name}"

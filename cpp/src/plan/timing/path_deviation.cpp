@@ -16,7 +16,9 @@ constexpr std::size_t kNeighbours = 2;    // Edges on either side that are looke
 /// The distance to a polyline of points that follow it: the nearest edge is sought from the last point's.
 class Follower {
  public:
-  explicit Follower(const std::vector<Eigen::VectorXd>& waypoints) : waypoints_(waypoints) {}
+  explicit Follower(const std::vector<Eigen::VectorXd>& waypoints) : waypoints_(waypoints) {
+    for (std::size_t i = 0; i + 1 < waypoints.size(); ++i) edges_.emplace_back(waypoints[i + 1] - waypoints[i]);
+  }
 
   double distance(const Eigen::VectorXd& q) {
     double nearest = edge_distance(edge_, q);
@@ -45,11 +47,13 @@ class Follower {
 
  private:
   double edge_distance(std::size_t i, const Eigen::VectorXd& q) const {
-    const Eigen::VectorXd edge = waypoints_[i + 1] - waypoints_[i], way = q - waypoints_[i];
-    return (way - std::clamp(way.dot(edge) / edge.squaredNorm(), 0.0, 1.0) * edge).norm();
+    const Eigen::VectorXd& edge = edges_[i];
+    const double along = (q - waypoints_[i]).dot(edge) / edge.squaredNorm();
+    return (q - waypoints_[i] - std::clamp(along, 0.0, 1.0) * edge).norm();
   }
 
   const std::vector<Eigen::VectorXd>& waypoints_;
+  std::vector<Eigen::VectorXd> edges_;
   std::size_t edge_ = 0;
 };
 

@@ -269,13 +269,12 @@ def try_leaf(small: dict[str, Any], folder: Path) -> None:
 
 def try_capability(small: dict[str, Any], folder: Path) -> None:
     """A cube of 200 voxels a side with 50 poses is at the limit; one pose more, or the default 200, is refused at once."""
-    far = mg.base.CapabilityMap
-    given = {"lower": (-1, -1, -1), "upper": (1, 1, 1), "voxel": 0.01}
+    given: Any = {"lower": (-1, -1, -1), "upper": (1, 1, 1), "voxel": 0.01}
     for each in (51, 200):
         with pytest.raises(mg.InvalidInput, match="4e8 tool poses"):
-            far.build(ARM, poses=each, **given)
+            mg.base.CapabilityMap.build(ARM, poses=each, **given)
     with pytest.raises(mg.InvalidInput, match="rolls"):  # looked at after the number of poses
-        far.build(ARM, poses=50, rolls=3, **given)
+        mg.base.CapabilityMap.build(ARM, poses=50, rolls=3, **given)
 
 
 def try_masks(small: dict[str, Any], folder: Path) -> None:

@@ -246,7 +246,10 @@ def test_wrong_timing_arguments_are_refused_by_name(robot: mg.Robot, arm: mg.rob
             ["joint_step = 0", "must be in [1e-09, 1e+06] rad or m"],
         ),
         (lambda: mg.time_parameterize([START, GOAL], [1] * 4, [1] * 4, names=five), ["names = 5", "names of joints"]),
-        (lambda: mg.time_parameterize([START, GOAL], [1] * 4, [1] * 4, sample_period=1e-13), ["sample_period = 1e-13", "must be in [1e-09"]),
+        (
+            lambda: mg.time_parameterize([START, GOAL], [1] * 4, [1] * 4, sample_period=1e-13),
+            ["sample_period = 1e-13", "must be in [1e-09"],
+        ),
         (lambda: mg.time_parameterize([[0], [2]], [1], [1], sample_period=1e-7), ["sample_period = 1e-07", "takes 3"]),
     ]
     for call, words in refusals:

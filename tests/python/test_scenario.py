@@ -351,7 +351,9 @@ def test_a_surface_that_is_no_solid_is_told_at_its_line(
     mg.load_scenario(path)
     line = next(i for i, text in enumerate(path.read_text().splitlines(), 1) if "open.stl" in text)
     place = f"{path}:{line}: obstacles[{len(raw['obstacles']) - 1}].mesh: "
-    assert caplog.messages == [place + "its surface is not closed: it is no solid, and a body wholly behind it does not touch it"]
+    assert caplog.messages == [
+        place + "its surface is not closed: it is no solid, and a body wholly behind it does not touch it"
+    ]
 
 
 def test_meshes_may_be_simpler_within_a_tolerance(

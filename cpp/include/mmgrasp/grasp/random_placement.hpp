@@ -24,11 +24,12 @@ MMGRASP_EXPORT std::vector<RestingPose> resting_poses(const std::vector<LinkShap
 
 /// How many parts random_placement() puts into a tray, whether on top of one another, and how long it looks for room.
 struct MMGRASP_EXPORT PlacementOptions {
-  int count = 12;             ///< Parts wanted; >= 0. P1's fill of 75 % of a tray for twelve is nine.
-  int draws = 100;            ///< Random places tried for each part; > 0.
-  bool stack = true;          ///< A part that finds no place on the floor may lie on others, no higher than the walls.
-  double clearance = 0.0005;  ///< Left to the walls, under parts on the floor and, at most, under those on others [m]; > 0.
-  unsigned seed = 1;          ///< Same seed, same places.
+  int count = 12;     ///< Parts wanted; >= 0. P1's fill of 75 % of a tray for twelve is nine.
+  int draws = 100;    ///< Random places tried for each part; > 0.
+  bool stack = true;  ///< A part that finds no place on the floor may lie on others, no higher than the walls.
+  double clearance =
+      0.0005;         ///< Left to the walls, under parts on the floor and, at most, under those on others [m]; > 0.
+  unsigned seed = 1;  ///< Same seed, same places.
   void check() const;
 };
 

@@ -112,3 +112,9 @@ def test_verdict_is_the_planners(tmp_path: Path, capsys: pytest.CaptureFixture[s
         assert ("can be planned for: motions of its joints and whole rounds" in capsys.readouterr().out) == can
         assert main(["init", str(urdf), "-o", str(file), "--base", base]) == 0
         assert (main(["plan", str(file), "-o", str(out), "--no-pictures"]) == 0) == can
+
+
+def test_a_chain_of_more_joints_than_a_group_may_have_is_told_so(tmp_path: Path) -> None:
+    """Twelve hundred links, deeper than Python's calls may be nested; no shapes, so that no pairs are looked at."""
+    check = checked(tmp_path, chain(["0 0 1"] * 1200).replace(BARE.format(0.05), ""))
+    assert any("1200" in line and "at most 64" in line for line in check.missing), check.missing

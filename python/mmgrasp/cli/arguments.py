@@ -410,7 +410,7 @@ class _Number:
             plain = text.isascii() and text.isdigit() and len(text) < 20
             if not plain or not self.least <= int(text) <= self.most:
                 raise argparse.ArgumentTypeError(
-                    f"{text!r}: must be a whole number, at least {self.least} and at most {self.most} {self.unit}"
+                    f"{text!r}: must be a whole number, at least {self.least} and at most {self.most} {self.unit}".rstrip()
                 )
             return int(text)
         value = _number(text)
@@ -426,7 +426,7 @@ def _count(least: int, most: int, unit: str) -> _Number:
 
 
 _threads = _count(0, 1024, "threads")
-_seed = _count(0, 2**31 - 1, "(any)")
+_seed = _count(0, 2**31 - 1, "")
 
 
 _length = _Number(0, 1, "m")

@@ -46,6 +46,7 @@ def planning_needs(robot: Robot) -> PlanningNeeds:
     _still_joints(robot, needs)
     try:
         arm = find_arm(robot, wheels, None, None)
+        robot.group(base_link=arm.base_link, tip=arm.hand_link)
     except InvalidInput as error:
         _lasting(robot, needs).append(str(error))
         return needs

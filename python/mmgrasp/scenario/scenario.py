@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import os
+import re
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -248,7 +249,7 @@ def _read_options(root: Node, section: str, table: dict[str, tuple[Any, str]], e
         try:
             _core._check_options(section, **{key: options[key]})
         except InvalidInput as error:
-            root[section][key].fail(str(error))
+            root[section][key].fail(re.sub(r"^[\w.]+ = \S+: ", "", str(error)))  # told with its name in the file
     return options
 
 

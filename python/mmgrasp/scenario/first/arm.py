@@ -81,9 +81,10 @@ def _arm_ends(tree: Tree, wheels: list[str]) -> list[str]:
 def _carries_fingers(tree: Tree, link: str) -> bool:
     """Whether more than one joint begins at a body, or a last one whose name says that it is a jaw."""
     below = tree.below(link)
-    return len(below) > 1 or (
-        tree.depth(link) == 1 and any(_JAW.search(f"{n} {tree.joints[n]['child']}") for n in below)
-    )
+    if len(below) != 1:
+        return len(below) > 1
+    child = tree.joints[below[0]]["child"]
+    return not tree.below(child) and _JAW.search(f"{below[0]} {child}") is not None
 
 
 def _arm_of_group(tree: Tree, name: str) -> Arm:

@@ -60,10 +60,6 @@ class Tree:
             open_ += self.below(self.joints[found[-1]]["child"])
         return found
 
-    def depth(self, link: str) -> int:
-        """The most movable joints on a way from a link to a leaf."""
-        return max((1 + self.depth(self.joints[n]["child"]) for n in self.below(link)), default=0)
-
     def axis(self, name: str) -> np.ndarray:
         """Unit axis of a joint that turns, in the root frame when all joints are 0."""
         joint = self.joints[name]

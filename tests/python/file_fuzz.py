@@ -80,7 +80,8 @@ def main() -> int:
     seed = int(sys.argv[3]) if len(sys.argv) > 3 else 1
     read = read_plan_whole if source.suffix == ".json" else read_scenario
     with tempfile.TemporaryDirectory() as folder:
-        print("read {}, refused {}".format(*fuzz(source.read_text(), read, Path(folder), tries, seed)))
+        taken, refused = fuzz(source.read_text(), read, Path(folder), tries, seed)
+    print(f"{taken + refused} tries: {taken} read, {refused} refused")
     return 0
 
 

@@ -2,10 +2,14 @@
 
 python tests/python/hostile.py                    the quick size: those tests of each part that are not marked slow
 python tests/python/hostile.py --night [PART...]  all tests and the long searches of all parts, or of those named
+python tests/python/hostile.py --write            puts what the last night runs of all parts tried and found into docs/hostile.md
 """
 
 from __future__ import annotations
 
+import datetime
+import json
+import re
 import resource
 import subprocess
 import sys
@@ -19,6 +23,9 @@ from xml.etree import ElementTree
 
 HERE = Path(__file__).parent
 REPOSITORY = HERE.parents[1]
+KEPT = REPOSITORY / "build" / "hostile"
+PAGE = REPOSITORY / "docs" / "hostile.md"
+BEGIN, END = "<!-- tries: written by tests/python/hostile.py -->", "<!-- end of tries -->"
 SCENARIO = REPOSITORY / "python" / "mmgrasp" / "assets" / "scenarios" / "storeroom.yaml"
 
 
@@ -68,15 +75,52 @@ def run_tests(parts: Iterable[str], arguments: list[str]) -> tuple[bool, dict[st
     return done.returncode == 0, seconds, tests
 
 
-def run_search(words: str, kept: Path) -> tuple[bool, float]:
-    first, *others = words.replace("{kept}", str(kept)).split()
+def run_search(words: str) -> tuple[bool, float, int]:
+    """Whether nothing was found, seconds, and the tries that the search says it made."""
+    first, *others = words.replace("{kept}", str(KEPT)).split()
     begun = time.monotonic()
-    command = [first] if first.startswith("./") else [sys.executable, str(HERE / first)]
-    done = subprocess.run([*command, *others], cwd=REPOSITORY, check=False)
-    return done.returncode == 0, time.monotonic() - begun
+    command = [first] if first.startswith("./") else [sys.executable, "-u", str(HERE / first)]
+    tries = 0
+    with subprocess.Popen([*command, *others], cwd=REPOSITORY, stdout=subprocess.PIPE, text=True) as running:
+        for line in running.stdout or ():
+            print(line, end="", flush=True)
+            if found := re.match(r"(\d+) tries", line):
+                tries += int(found[1])
+    return running.returncode == 0, time.monotonic() - begun, tries
+
+
+def keep(part: str, what: str, tries: int, good: bool) -> None:
+    """Remembers the last run of a part's tests or of one of its searches, for --write."""
+    record = KEPT / "record.json"
+    known = json.loads(record.read_text()) if record.exists() else {}
+    row = {"part": part, "tries": tries, "good": good, "day": datetime.date.today().isoformat()}
+    record.write_text(json.dumps({**known, f"{part}: {what}": row}, indent=1))
+
+
+def table() -> str:
+    """What was tried, part by part, as docs/hostile.md has it."""
+    record = json.loads((KEPT / "record.json").read_text())
+    lines = ["| door | run | tries | found | day |", "|---|---|---|---|---|"]
+    for name, part in PARTS.items():
+        for what in ("tests", *part.night):
+            row = record.get(f"{name}: {what}")
+            shown = what.replace(str(SCENARIO), SCENARIO.name).replace(" {kept}", "")
+            if row is None or not row["tries"]:
+                continue
+            found = "nothing" if row["good"] else "something"
+            lines.append(f"| {part.title} | `{shown}` | {row['tries']:,} | {found} | {row['day']} |")
+    return "\n".join([*lines, "", f"{sum(row['tries'] for row in record.values()):,} tries in all."])
+
+
+def write() -> None:
+    before, rest = PAGE.read_text().split(BEGIN)
+    PAGE.write_text(f"{before}{BEGIN}\n\n{table()}\n\n{END}{rest.split(END)[1]}")
 
 
 def main() -> int:
+    if "--write" in sys.argv:
+        write()
+        return 0
     night = "--night" in sys.argv
     chosen = [word for word in sys.argv[1:] if word != "--night"] or list(PARTS)
     if unknown := set(chosen) - PARTS.keys():
@@ -85,12 +129,13 @@ def main() -> int:
     good, seconds, tests = run_tests(chosen, [] if night else ["-m", "not slow"])
     failed = [] if good else ["tests"]
     lines = [f"{PARTS[name].title:45} {tests[name]:5} tests {seconds[name]:8.1f} s" for name in chosen]
-    if night:
-        kept = REPOSITORY / "build" / "hostile"
-        kept.mkdir(parents=True, exist_ok=True)
-        for words in (words for name in chosen for words in PARTS[name].night):
-            good, took = run_search(words, kept)
-            lines.append(f"{words:57} {took:8.1f} s{'' if good else '  FAILED'}")
+    KEPT.mkdir(parents=True, exist_ok=True)
+    for name in chosen if night else []:
+        keep(name, "tests", tests[name], good)
+        for words in PARTS[name].night:
+            good, took, tries = run_search(words)
+            keep(name, words, tries, good)
+            lines.append(f"{words:57} {tries:7} tries {took:8.1f} s{'' if good else '  FAILED'}")
             failed += [] if good else [words]
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     lines.append(f"{'processor time of all':57} {used.ru_utime + used.ru_stime:8.1f} s")

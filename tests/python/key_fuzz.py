@@ -136,7 +136,7 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as folder:
         most = int(sys.argv[2]) if len(sys.argv) > 2 else None
         taken, refused = fuzz(sys.argv[1], Path(folder), most, int(sys.argv[3]) if len(sys.argv) > 3 else 1)
-    print(f"{taken} read, {refused} refused")
+    print(f"{taken + refused} tries: {taken} read, {refused} refused")
     return 0
 
 

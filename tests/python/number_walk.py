@@ -218,7 +218,8 @@ def complaint(one: Try, outcome: str) -> str | None:
     return None
 
 
-def main(names: list[str]) -> None:
+def main(names: list[str]) -> int:
+    complaints = 0
     some = tries(names or [""])
     counts: collections.Counter[str] = collections.Counter()
     for first in range(0, len(some), 500):
@@ -226,13 +227,15 @@ def main(names: list[str]) -> None:
         for one, outcome in outcomes.items():
             fault = complaint(one, outcome)
             if fault:
+                complaints += 1
                 print(f"{one}: {fault}", flush=True)
         counts.update(outcome.split(":")[0] for outcome in outcomes.values())
-    print(dict(counts))
+    print(f"{len(some)} tries: {dict(counts)}; {complaints} complaints")
+    return 1 if complaints else 0
 
 
 if __name__ == "__main__":
     if sys.argv[1:2] == ["--work"]:
         _work(sys.argv[2])
     else:
-        main(sys.argv[1:])
+        sys.exit(main(sys.argv[1:]))

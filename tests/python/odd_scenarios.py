@@ -161,7 +161,7 @@ def main() -> int:
                 broken += 1
                 shutil.copytree(folder, kept / f"odd_{number}", dirs_exist_ok=True)
     faulthandler.cancel_dump_traceback_later()
-    print(f"{tries} scenarios from seed {seed}: {dict(outcomes)}; {broken} broke the rule ({kept})")
+    print(f"{tries} tries from seed {seed}: {dict(outcomes)}; {broken} broke the rule ({kept})")
     return 1 if broken else 0
 
 

@@ -299,6 +299,17 @@ def causes_miscounted(plan: dict[str, Any]) -> None:
     plan["regions"][0]["explanations"][0]["rejections"]["scene"] += 1
 
 
+def explanations_thinned(plan: dict[str, Any]) -> None:
+    """One base pose was tried, as if the region had not been looked for."""
+    for said in plan["regions"][0]["explanations"]:
+        said["base_poses_tried"] = said["base_poses_feasible"] = 1
+        said["rejections"] = dict.fromkeys(said["rejections"], 0)
+
+
+def proof_disowned(plan: dict[str, Any]) -> None:
+    plan["proven_minimal"] = plan["premises"]["search_finished"] = not plan["proven_minimal"]
+
+
 def workspace_shrunk(plan: dict[str, Any]) -> None:
     plan["scenario"]["robot"]["base_limits"]["workspace"] = 0.5
 
@@ -328,6 +339,8 @@ BREAKS = [
     tray_flattened,
     other_headings,
     causes_miscounted,
+    explanations_thinned,
+    proof_disowned,
     workspace_shrunk,
     joint_moved,
     end_moved,

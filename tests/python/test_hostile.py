@@ -6,6 +6,9 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
+import hostile
 from hostile import HERE, PARTS, files
 
 
@@ -27,3 +30,20 @@ def test_every_table_of_bad_inputs_is_in_a_part() -> None:
 def test_unknown_parts_are_told() -> None:
     done = subprocess.run([sys.executable, str(HERE / "hostile.py"), "nothing"], capture_output=True, text=True)
     assert done.returncode == 2 and "no part nothing; there are texts, " in done.stderr
+
+
+def test_tries_of_a_search_are_counted_and_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    page = tmp_path / "hostile.md"
+    page.write_text(f"before\n{hostile.BEGIN}\nold\n{hostile.END}\nafter\n")
+    search = tmp_path / "search.py"
+    search.write_text("print('1200 tries: 3 read'); print('no tries here')")
+    monkeypatch.setattr(hostile, "KEPT", tmp_path)
+    monkeypatch.setattr(hostile, "PAGE", page)
+    monkeypatch.setattr(hostile, "PARTS", {"texts": hostile.Part("Texts", "yaml_text", (str(search),))})
+    good, _, tries = hostile.run_search(str(search))
+    hostile.keep("texts", "tests", 34, True)
+    hostile.keep("texts", str(search), tries, good)
+    hostile.write()
+    text = page.read_text()
+    assert "1,200 | nothing" in text and "1,234 tries in all." in text and "old" not in text
+    assert text.startswith("before\n") and text.endswith("after\n")

@@ -109,6 +109,47 @@ def test_files_of_somebody_else_are_not_taken_for_ours(tmp_path: Path, name: str
     assert (tmp_path / name).read_text() == "mine"
 
 
+@pytest.mark.parametrize("name", ["plan.json", "trajectories/a.csv"])
+def test_files_that_were_edited_since_are_not_replaced(tmp_path: Path, name: str) -> None:
+    fill(tmp_path, plan_json="1", trajectories__a_csv="1")
+    (tmp_path / name).write_text("by hand")
+    with pytest.raises(mg.IoError, match=rf"holds {name}, changed since mmgrasp wrote it"):
+        OutputFolder(tmp_path)
+    assert (tmp_path / name).read_text() == "by hand"
+    (tmp_path / name).unlink()
+    fill(tmp_path, plan_json="2")
+    assert names(tmp_path) == {"plan.json", LIST}
+
+
+def test_a_run_that_was_killed_among_its_files_leaves_a_folder_that_can_be_filled(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fill(tmp_path, plan_json="1", trajectories__a_csv="1")
+    replace, moved = os.replace, []
+
+    def killed(source: Path, target: Path) -> None:
+        if ".writing." in str(source) and ".writing." not in str(target) and Path(target).name != LIST:
+            moved.append(target)
+            if len(moved) == 2:
+                raise OSError(errno.EIO, "killed here")
+        replace(source, target)
+
+    monkeypatch.setattr(os, "replace", killed)
+    with pytest.raises(mg.IoError, match="killed here"):
+        fill(tmp_path, plan_json="2", trajectories__a_csv="2")
+    monkeypatch.setattr(os, "replace", replace)
+    assert {(tmp_path / name).read_text() for name in ("plan.json", "trajectories/a.csv")} == {"1", "2"}
+    fill(tmp_path, plan_json="3")
+    assert names(tmp_path) == {"plan.json", LIST}
+
+
+def test_lists_of_earlier_versions_are_read(tmp_path: Path) -> None:
+    (tmp_path / "plan.json").write_text("old")
+    (tmp_path / LIST).write_text(json.dumps({"format": "mmgrasp-files", "files": [LIST, "plan.json"]}))
+    fill(tmp_path, plan_json="2")
+    assert (tmp_path / "plan.json").read_text() == "2"
+
+
 @pytest.mark.parametrize("listed", ["../outside", "/etc/hosts", "a/b/c", 3, None, {"a": 1}])
 def test_a_list_that_leads_elsewhere_removes_nothing(tmp_path: Path, listed: object) -> None:
     outside, folder = tmp_path / "outside", tmp_path / "folder"
@@ -287,14 +328,21 @@ def test_folders_in_the_place_of_files_and_files_in_that_of_folders(tmp_path: Pa
 
 
 def test_devices_are_never_replaced(tmp_path: Path) -> None:
-    for path in (Path("/dev/null"), Path("/dev/full")):
-        with pytest.raises(mg.IoError, match="no regular file"):
-            write_file(path, "x")
-        with pytest.raises(mg.IoError, match="no regular file"):
-            check_file(path, PNG)
-        with pytest.raises(mg.IoError, match="already"):
-            check_new_file(path)
-        assert stat.S_ISCHR(os.stat(path).st_mode)
+    path = tmp_path / "null"  # one of our own: a test must not be able to break the machine's
+    try:
+        os.mknod(path, stat.S_IFCHR | 0o666, os.makedev(1, 3))
+    except PermissionError:
+        pytest.skip("only the superuser makes device nodes")
+    with pytest.raises(mg.IoError, match="no regular file"):
+        write_file(path, "x")
+    with pytest.raises(mg.IoError, match="no regular file"):
+        check_file(path, PNG)
+    with pytest.raises(mg.IoError, match="already"):
+        check_new_file(path)
+    assert stat.S_ISCHR(os.stat(path).st_mode)
+
+
+def test_pipes_are_never_replaced(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe")
     with pytest.raises(mg.IoError, match="no regular file"):
         write_file(tmp_path / "pipe", "x")

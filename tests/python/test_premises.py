@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import copy
+from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
+import yaml
 from rich.console import Console
 
 import mmgrasp as mg
-from mmgrasp.cli.tables import print_verdict
+from mmgrasp.cli.tables import print_verdict, summary
 from mmgrasp.part_supply import PlanVerdict
 from mmgrasp.part_supply.premises import premises_text
 
@@ -26,6 +29,25 @@ def test_undecided_is_said() -> None:
     print_verdict(verdict, console)
     text = console.export_text()
     assert "whether 7 stops are the least was not decided (at least 5), since the search" in text
+
+
+def test_shares_of_few_draws_say_how_sure_they_are() -> None:
+    console = Console(record=True, width=200)
+    rates: Any = [SimpleNamespace(stop=0, samples=n, good=n, worst_part="") for n in (1, 1000)]
+    print_verdict(PlanVerdict([], rates, 2, lower_bound=2), console)
+    text = console.export_text()
+    assert "from 1 of 1 base poses, 100.00 % (95 %: 20.65 to 100.00)" in text  # 1 / (1 + 1.96^2)
+    assert "from 1000 of 1000 base poses, 100.00 % (95 %: 99.62 to 100.00)" in text
+
+
+def test_markup_in_names_is_text_in_tables(small: dict[str, Any], tmp_path: Path) -> None:
+    marked = {**small, "name": "[bold]a[/nothing]", "trays": [{**small["trays"][0], "name": "[red]b[/x]"}]}
+    path = tmp_path / "scenario.yaml"
+    path.write_text(yaml.safe_dump(marked))
+    console = Console(record=True, width=200)
+    console.print(summary(mg.plan_part_supply(path)))
+    text = console.export_text()
+    assert "[bold]a[/nothing]" in text and "[red]b[/x]" in text
 
 
 def test_premises_of_the_proof(small_plan: mg.part_supply.ScenarioPlan, small_plan_dict: dict[str, Any]) -> None:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import copy
+from pathlib import Path
 from typing import Any
 
 import pytest
+import yaml
 
 import mmgrasp as mg
 import plan_breaks
@@ -79,6 +81,40 @@ def test_regions_cut_off_on_one_side_are_refused(
         plan["scenario"]["padding"] = {"links": 0.0, "by_name": {}}
     codes = {fault.code for fault in mg.verify_plan(plan, samples=1).faults}
     assert "region-incomplete" in codes
+
+
+def small_regions(plan: dict[str, Any], cells: int) -> None:
+    """Leaves so many rows and columns of cells around the first stop of its region."""
+    import numpy as np
+
+    grid, stop, region = plan["grid"], plan["stops"][0], plan["regions"][0]
+    at = [int((stop["pose"][a] - grid["origin"][a]) / grid["resolution"]) - (cells - 1) // 2 for a in (0, 1)]
+    for heading, runs in region["cells"].items():
+        layer = np.zeros((grid["ny"], grid["nx"]), int)
+        for iy, a, b in runs:
+            layer[iy, a:b] = 1
+        kept = np.zeros_like(layer)
+        kept[at[1] : at[1] + cells, at[0] : at[0] + cells] = 1
+        region["cells"][heading] = runs_of(layer & kept)
+
+
+@pytest.mark.parametrize("cells", [2, 3, 4])
+def test_regions_of_few_cells_are_refused_where_there_are_more(small_plan_dict: dict[str, Any], cells: int) -> None:
+    plan = copy.deepcopy(small_plan_dict)
+    small_regions(plan, cells)
+    assert "region-incomplete" in {fault.code for fault in mg.verify_plan(plan, samples=1).faults}
+
+
+def test_a_heading_whose_cells_are_left_out_is_missed(small: dict[str, Any], tmp_path: Path) -> None:
+    turned = {**small, "trays": [{**tray, "headings": [0.0, 0.3]} for tray in small["trays"]]}
+    (tmp_path / "scenario.yaml").write_text(yaml.safe_dump(turned, sort_keys=False))
+    plan = mg.plan_part_supply(tmp_path / "scenario.yaml").to_dict()
+    assert mg.verify_plan(plan, samples=1).ok
+    region = plan["regions"][0]
+    other = str(1 - plan["grid"]["headings"].index(plan["stops"][0]["pose"][2]))
+    assert sum(b - a for _, a, b in region["cells"][other]) > 50
+    region["cells"][other] = []
+    assert "region-incomplete" in {fault.code for fault in mg.verify_plan(plan, samples=1).faults}
 
 
 def test_runs_hold_every_cell() -> None:

@@ -6,13 +6,14 @@ import copy
 import itertools
 import json
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 import mmgrasp as mg
+from mmgrasp.part_supply.verification import differences
 
 
 @pytest.mark.parametrize(
@@ -91,6 +92,28 @@ def test_values_that_are_no_numbers_are_refused(small_plan_dict: dict[str, Any])
         plan["picks"][0]["motions"][0]["positions"][0][0] = value
         with pytest.raises(mg.InvalidInput, match=r"picks\[0\]\.motions\[0\]\.positions"):
             mg.verify_plan(plan)
+
+
+def test_every_section_of_the_scenario_is_compared(small_plan_dict: dict[str, Any]) -> None:
+    """A section that is another one differs, and so does a number deep inside of it."""
+    scenario = small_plan_dict["scenario"]
+
+    def numbers(value: Any, path: tuple[Any, ...]) -> Iterator[tuple[Any, ...]]:
+        items = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+        for key, one in items:
+            yield from numbers(one, (*path, key))
+        if isinstance(value, float):
+            yield path
+
+    for key in scenario.keys() - {"name", "source"}:
+        assert differences(scenario, {**scenario, key: "another"})[0][0] == f".{key}"
+        for path in itertools.islice(numbers(scenario[key], (key,)), 3):
+            changed = copy.deepcopy(scenario)
+            here = changed
+            for step in path[:-1]:
+                here = here[step]
+            here[path[-1]] += 0.01
+            assert differences(scenario, changed), path
 
 
 @pytest.mark.slow

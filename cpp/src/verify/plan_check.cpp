@@ -110,10 +110,12 @@ std::vector<std::pair<std::size_t, std::size_t>> overlapping_bodies(const std::v
 }
 
 void PlanCheckOptions::check() const {
-  require(joint_step >= kLeastStep && joint_step <= 1e3, "joint_step", joint_step, "must be in [1e-9, 1e3] [rad or m]");
-  require(base_step >= kLeastStep && base_step <= 1e3, "base_step", base_step, "must be in [1e-9, 1e3] [m]");
-  require(position_tolerance > 0, "position_tolerance", position_tolerance, "must be positive");
-  require(rotation_tolerance > 0, "rotation_tolerance", rotation_tolerance, "must be positive");
+  require(joint_step >= kLeastStep && joint_step <= 0.1, "joint_step", joint_step, "must be in [1e-9, 0.1] [rad or m]");
+  require(base_step >= kLeastStep && base_step <= 0.1, "base_step", base_step, "must be in [1e-9, 0.1] [m]");
+  require(position_tolerance > 0 && position_tolerance <= 0.01, "position_tolerance", position_tolerance,
+          "must be in (0, 0.01] [m]");
+  require(rotation_tolerance > 0 && rotation_tolerance <= 0.1, "rotation_tolerance", rotation_tolerance,
+          "must be in (0, 0.1] [rad]");
   require(samples > 0, "samples", samples, "must be positive");
   require(required_rate > 0 && required_rate <= 1, "required_rate", required_rate, "must be in (0, 1]");
   require(samples <= 1000000, "samples", samples, "must be at most 1000000");

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import os
 import re
 from dataclasses import dataclass
 from pathlib import Path
@@ -74,7 +75,7 @@ def _add_plan(commands: Commands) -> None:
 
 def _add_verify(commands: Commands) -> None:
     parser = commands.add_parser("verify", help="check a finished plan without the planner")
-    parser.add_argument("plan", type=_path, help="plan.json")
+    parser.add_argument("plan", type=_plan, help="plan.json, or the folder it lies in")
     parser.add_argument("--scenario", type=_path, metavar="FILE", help="compare with this scenario, read anew")
     parser.add_argument("--robot", type=_source, metavar="NAME", help="the robot profile the plan was made with")
     parser.add_argument(
@@ -89,7 +90,7 @@ def _add_verify(commands: Commands) -> None:
 
 def _add_arrive(commands: Commands) -> None:
     parser = commands.add_parser("arrive", help="plan the picks of a stop again, from where the base really stands")
-    parser.add_argument("plan", type=_path, help="plan.json")
+    parser.add_argument("plan", type=_plan, help="plan.json, or the folder it lies in")
     parser.add_argument(
         "--stop", type=_count(1, 1_000_000, "stops"), required=True, metavar="K", help="the plan's K-th stop, from 1"
     )
@@ -326,7 +327,7 @@ def _add_bench(commands: Commands) -> None:
 
 def _add_view(commands: Commands) -> None:
     parser = commands.add_parser("view", help="show a plan in the browser, or draw it")
-    parser.add_argument("plan", type=_path, help="plan.json")
+    parser.add_argument("plan", type=_plan, help="plan.json, or the folder it lies in")
     parser.add_argument("--png", type=_path, metavar="FILE", help="write a picture instead of opening the browser")
     parser.add_argument("--film", type=_path, metavar="FILE", help="write the whole round as an animated GIF")
     parser.add_argument("--port", type=_count(0, 65535, ""), default=8080, metavar="N")
@@ -372,6 +373,13 @@ def _path(text: str) -> Path:
     if not text or "\0" in text:
         raise argparse.ArgumentTypeError(f"{text!r}: must be a path that is not empty")
     return Path(text)
+
+
+def _plan(text: str) -> Path:
+    """A plan's file, or the folder that `mmgrasp plan` filled."""
+    path = _path(text)
+    inside = path / "plan.json"
+    return inside if os.path.isfile(inside) else path
 
 
 def _source(text: str) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import hashlib
 import json
 import os
 import shutil
@@ -28,8 +29,9 @@ class OutputFolder:
     which of them are folders of files.
 
     Everything is written beside its place and moved there at the end; what files.json lists of an earlier run goes. A folder that holds
-    files under our names which it does not list is refused: they could be somebody's, and played for the new run's. So is one
-    whose files.json is that of another command. What somebody else puts under our names while the command works is not replaced either.
+    files under our names which it does not list is refused: they could be somebody's, and played for the new run's. So is one where a
+    listed file is no longer the one that was written, or whose files.json is that of another command. What somebody else puts under our
+    names while the command works is not replaced either.
     """
 
     def __init__(self, path: Path, own: tuple[str, ...] = PLAN_FILES, folder: str = "trajectories") -> None:
@@ -41,11 +43,15 @@ class OutputFolder:
         others = sorted(name for name in listed if not any(fnmatchcase(name.split("/")[0], one) for one in own))
         if others:
             raise IoError(f"{path}: holds {others[0]}, written by another command of mmgrasp: choose another folder")
-        foreign = sorted(self._own_files() - listed)
+        foreign = sorted(self._own_files() - listed.keys())
         if foreign:
-            names = ", ".join(foreign[:3]) + (f" and {len(foreign) - 3} more" if len(foreign) > 3 else "")
             raise IoError(
-                f"{path}: holds {names}, which {LIST} there does not list: remove them or choose another folder"
+                f"{path}: holds {_some(foreign)}, which {LIST} there does not list: remove them or choose another folder"
+            )
+        edited = sorted(name for name, known in listed.items() if known and _digest(self.path / name) not in known)
+        if edited:
+            raise IoError(
+                f"{path}: holds {_some(edited)}, changed since mmgrasp wrote it: move it away or choose another folder"
             )
         self._known = self._marks()
 
@@ -101,15 +107,17 @@ class OutputFolder:
             raise IoError(f"{self.path}: cannot be written: {error.strerror or error}") from None
 
     def _take_over(self, draft: Path, added: bool, replacing: str) -> None:
-        written = {str(p.relative_to(draft).as_posix()) for p in draft.rglob("*") if p.is_file()} | {LIST}
+        files = {str(p.relative_to(draft).as_posix()): p for p in draft.rglob("*") if p.is_file() and p.name != LIST}
+        written = {name: {_digest(path)} for name, path in files.items()}
         self._refuse_what_came()
-        old = self._listed()
-        new = written | {name for name in old if added and not fnmatchcase(name, replacing)}
-        self._write_list(old | new)  # whoever is killed between here and the end leaves only files that are listed
-        for name in sorted(written - {LIST}):
+        old = {name: known for name, known in self._listed().items() if name != LIST}
+        new = {name: known for name, known in old.items() if added and not fnmatchcase(name, replacing)} | written
+        both = {name: old.get(name, set()) | new.get(name, set()) for name in old | new}
+        self._write_list(both)  # whoever is killed between here and the end leaves only files that are listed
+        for name in sorted(written):
             (self.path / name).parent.mkdir(exist_ok=True)
             os.replace(draft / name, self.path / name)
-        for name in sorted(old - new):
+        for name in sorted(old.keys() - new.keys()):
             with contextlib.suppress(FileNotFoundError):
                 (self.path / name).unlink()
             with contextlib.suppress(OSError):
@@ -121,9 +129,8 @@ class OutputFolder:
         """Raises IoError where, since the folder was last looked at, somebody wrote a file under a name of ours."""
         came = sorted(name for name, mark in self._marks().items() if self._known.get(name) != mark)
         if came:
-            names = ", ".join(came[:3]) + (f" and {len(came) - 3} more" if len(came) > 3 else "")
             raise IoError(
-                f"{printable(str(self.path))}: {names}: written by somebody else in the meantime, and left alone"
+                f"{printable(str(self.path))}: {_some(came)}: written by somebody else in the meantime, and left alone"
             )
 
     def _marks(self) -> dict[str, tuple[int, int, int]]:
@@ -151,8 +158,9 @@ class OutputFolder:
                 return place
         return None
 
-    def _write_list(self, names: set[str]) -> None:
-        write_file(self.path / LIST, json.dumps({"format": "mmgrasp-files", "files": sorted(names)}, indent=1) + "\n")
+    def _write_list(self, files: dict[str, set[str]]) -> None:
+        listed = {name: sorted(known) for name, known in sorted((files | {LIST: set()}).items())}
+        write_file(self.path / LIST, json.dumps({"format": "mmgrasp-files", "files": listed}, indent=1) + "\n")
 
     def _own_files(self) -> set[str]:
         """What lies under names of ours: whatever is in folders of ours, and links, folders or devices in the place of a file."""
@@ -165,17 +173,37 @@ class OutputFolder:
                 found |= {f"{name}/{p.name}" for p in inside.iterdir()}
         return found
 
-    def _listed(self) -> set[str]:
-        """Files that an earlier run wrote here, as files.json says: below this folder, and files."""
+    def _listed(self) -> dict[str, set[str]]:
+        """Files that an earlier run wrote here, as files.json says, below this folder, and the checksums that each may have (none: not known)."""
         path = self.path / LIST
         if not path.is_file() or path.is_symlink():
-            return set()
+            return {}
         try:
             content = json.loads(read_text(path, _LARGEST_LIST))
             if content["format"] != "mmgrasp-files":
-                return set()
-            names = [PurePosixPath(name) for name in content["files"]]
-        except (ValueError, KeyError, TypeError, RecursionError, InvalidInput):
-            return set()
+                return {}
+            files = content["files"]
+            if not isinstance(files, dict):  # the list of names of earlier versions
+                files = {name: [] for name in files}
+            names = {PurePosixPath(name): {str(one) for one in known} for name, known in files.items()}
+        except (ValueError, KeyError, TypeError, AttributeError, RecursionError, InvalidInput):
+            return {}
         good = [n for n in names if not n.is_absolute() and ".." not in n.parts and len(n.parts) <= 2]
-        return {str(n) for n in good if (self.path / n).is_file() and not (self.path / n).is_symlink()}
+        return {str(n): names[n] for n in good if (self.path / n).is_file() and not (self.path / n).is_symlink()}
+
+
+def _some(names: list[str]) -> str:
+    """The first of the names, and how many more there are."""
+    return ", ".join(names[:3]) + (f" and {len(names) - 3} more" if len(names) > 3 else "")
+
+
+def _digest(path: Path) -> str:
+    """SHA-256 of a file's content."""
+    found = hashlib.sha256()
+    try:
+        with open(path, "rb") as file:
+            while block := file.read(1 << 20):
+                found.update(block)
+    except OSError as error:
+        raise IoError(f"{printable(str(path))}: cannot be read: {error.strerror}") from None
+    return found.hexdigest()

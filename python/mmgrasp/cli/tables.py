@@ -10,6 +10,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from .._files import printable
+from .._shares import share_interval
 from ..part_supply import DriveByPlan, PlanVerdict, ScenarioPlan
 from ..part_supply.premises import premises_text
 
@@ -84,11 +85,11 @@ def print_verdict(verdict: PlanVerdict, console: Console) -> None:
     for fault in verdict.faults:
         console.print(printable(f"FAULT {fault.code}: {fault.where}: {fault.message}"), markup=False, soft_wrap=True)
     for rate in verdict.rates:
-        share = 100 * rate.good / max(rate.samples, 1)
+        low, high = share_interval(rate.good, rate.samples)
         worst = f" (worst: {rate.worst_part})" if rate.good < rate.samples else ""
         console.print(
             f"stop {rate.stop + 1}: every part graspable from {rate.good} of {rate.samples} base poses, "
-            f"{share:.2f} %{worst}",
+            f"{100 * rate.good / max(rate.samples, 1):.2f} % (95 %: {100 * low:.2f} to {100 * high:.2f}){worst}",
             markup=False,
         )
     if verdict.allowed_collisions:

@@ -143,7 +143,9 @@ def _regions(plan: Plan) -> Found:
     if [region["tray"] for region in plan["regions"]] != trays:
         yield "regions", "must be one a tray, in the order of the trays"
         return
+    cells = masks(plan)
     for i, region in enumerate(plan["regions"]):
+        served = int(cells[region["tray"]].sum())
         wanted = [part for part in parts if part["tray"] == region["tray"] and part["target"]]
         if [e["part"] for e in region["explanations"]] != [part["name"] for part in wanted]:
             yield f"regions[{i}].explanations", "must be one a target part of the tray, in their order"
@@ -155,6 +157,8 @@ def _regions(plan: Plan) -> Found:
                 yield where, f"counts {said['grasps']} grasps, the part has {len(part['grasps'])}"
             elif failed < 0 or sum(said["rejections"].values()) != failed * said["grasps"]:
                 yield where, "must name one cause for each grasp and base pose that failed"
+            elif said["base_poses_feasible"] < served:  # each cell has a middle of its own
+                yield where, f"counts {said['base_poses_feasible']} feasible base poses, the region has {served} cells"
 
 
 def masks(plan: Plan) -> dict[str, np.ndarray]:

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from .._files import write_file
+from .._shares import share_interval
 from ..part_supply.drives import all_drives
 from ..part_supply.premises import premises, premises_text
 from .style import tray_colour
@@ -218,11 +219,9 @@ def _stops(plan: dict[str, Any]) -> str:
 
 
 def _share(seen: dict[str, int]) -> str:
-    """A share and its 95 % interval (Wilson)."""
-    n, p, z = seen["drawn"], seen["served"] / seen["drawn"], 1.96
-    middle = (p + z * z / (2 * n)) / (1 + z * z / n)
-    half = z * math.sqrt(p * (1 - p) / n + (z / (2 * n)) ** 2) / (1 + z * z / n)
-    return f"{100 * p:.1f} % ({100 * (middle - half):.1f} to {100 * min(middle + half, 1):.1f})"
+    """A share and its 95 % interval."""
+    low, high = share_interval(seen["served"], seen["drawn"])
+    return f"{100 * seen['served'] / seen['drawn']:.1f} % ({100 * low:.1f} to {100 * high:.1f})"
 
 
 def _picks(plan: dict[str, Any]) -> str:

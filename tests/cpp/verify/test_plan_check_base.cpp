@@ -394,6 +394,41 @@ TEST(PlanCheckStops, BasePosesAreDrawnInRegionsAndBesideThem) {
   EXPECT_TRUE(codes(check_plan(plan, options)).count("region-inflated"));
 }
 
+TEST(PlanCheckStops, HeadingsWithoutCellsAreSearchedToo) {
+  // Fewer stops may be enough at a heading that was to be tried and of which the plan says nothing.
+  PlanCheckOptions options = quick();
+  options.region_samples = 20;
+  PlanToCheck plan = good_plan();
+  plan.grid.headings = {0.0, 0.3};
+  for (CheckedRegion& region : plan.regions) region.cells.resize(2 * region.cells.size(), 0);
+  plan.searched["A"] = {{0.0}, {0.4, 0}, 0.2};
+  EXPECT_EQ(codes(check_plan(plan, options)), Codes{});
+  plan.searched["A"] = {{0.0, 0.3}, {0.4, 0}, 0.2};
+  EXPECT_EQ(codes(check_plan(plan, options)), Codes{"region-incomplete"});
+  plan.searched["A"] = {{0.0, M_PI}, {0.4, 0}, 0.2};  // the arm does not reach backwards
+  plan.grid.headings = {0.0, M_PI};
+  EXPECT_EQ(codes(check_plan(plan, options)), Codes{});
+}
+
+TEST(PlanCheckStops, RegionsOfFewCellsAreLookedAtAllAround) {
+  PlanCheckOptions options = quick();
+  options.region_samples = 20;
+  for (const double half : {0.08, 0.13}) {  // 4 x 4 and 6 x 6 of its cells of 5 cm, or fewer
+    PlanToCheck plan = good_plan();
+    const CheckedGrid& grid = plan.grid;
+    for (int iy = 0; iy < grid.ny; ++iy) {
+      for (int ix = 0; ix < grid.nx; ++ix) {
+        const Eigen::Vector2d middle = grid.origin + grid.resolution * Eigen::Vector2d(ix + 0.5, iy + 0.5);
+        if ((middle - Eigen::Vector2d(0.4, 0)).cwiseAbs().maxCoeff() > half)
+          plan.regions[0].cells[iy * grid.nx + ix] = 0;
+      }
+    }
+    plan.positioning_uncertainty = plan.stops[0].radius = 0.04;
+    plan.searched["A"] = {{0.0}, {0.4, 0}, 1.0};
+    EXPECT_TRUE(codes(check_plan(plan, options)).count("region-incomplete")) << half;
+  }
+}
+
 TEST(PlanCheckRoute, SidewaysDrive) {
   PlanToCheck plan = good_plan();
   plan.route[1] = {plan.stops[0].pose, plan.stops[1].pose};

@@ -14,13 +14,13 @@ namespace mmgrasp::verify {
 
 /// How finely check_plan() looks at motions and regions, and from where on a difference is a fault.
 struct MMGRASP_EXPORT PlanCheckOptions {
-  double joint_step = 0.01;          ///< Arm paths are checked at least this finely [rad or m]; > 0.
-  double base_step = 0.01;           ///< The route [m, and rad x 2]; > 0.
-  double position_tolerance = 1e-4;  ///< How far a grasp may be off [m]; > 0.
-  double rotation_tolerance = 1e-3;  ///< How far a grasp may be turned [rad]; > 0.
+  double joint_step = 0.01;          ///< Arm paths are checked at least this finely [rad or m]; at most 0.1.
+  double base_step = 0.01;           ///< The route [m, and rad x 2]; at most 0.1.
+  double position_tolerance = 1e-4;  ///< How far a grasp may be off [m]; at most 0.01.
+  double rotation_tolerance = 1e-3;  ///< How far a grasp may be turned [rad]; at most 0.1.
   int samples = 1000;                ///< Base poses drawn in the uncertainty disc of each stop; > 0.
   double required_rate = 0.999;      ///< Share of them from which every target part has a grasp; in (0, 1].
-  /// Base poses drawn in each region, and cells drawn beside it; also poses drawn between the uncertainty disc of a
+  /// Base poses drawn in each region, and cells drawn beside it and elsewhere; also poses drawn between the uncertainty disc of a
   /// stop and the radius that the plan claims. 0: none.
   int region_samples = 20;
   unsigned seed = 20240607;

@@ -40,12 +40,13 @@ Obstruction explain_robustness(const RobustnessResult& check, const std::vector<
 }
 
 Obstruction explain_route(const Eigen::Vector3d& from, bool from_stop, const Eigen::Vector3d& to,
-                          const std::string& tray) {
+                          const std::string& tray, double resolution) {
   Obstruction obstruction;
   obstruction.stage = "route";
   obstruction.tray = tray;
   obstruction.message = "no drive from " + ends_of_drive(from, from_stop, " leads to ", to, tray) +
-                        " with the arm at home: widen the way, choose a narrower home, or a finer route_resolution";
+                        " with the arm at home, not in cells of " + six_digits(0.5 * resolution) +
+                        " m either: widen the way or choose a narrower home";
   return obstruction;
 }
 

@@ -19,11 +19,11 @@ Obstruction explain_region(const PartSupplyProblem& problem, const ReachDatabase
 Obstruction explain_robustness(const RobustnessResult& check, const std::vector<Stop>& stops);
 
 /// Explains that no drive leads from the start, or a stop, to a base pose; `tray` is the one to be served there, empty
-/// for the goal.
+/// for the goal, `resolution` what the route was asked for with [m]; cells of half of it were tried as well.
 Obstruction explain_route(const Eigen::Vector3d& from, bool from_stop, const Eigen::Vector3d& to,
-                          const std::string& tray);
+                          const std::string& tray, double resolution);
 
-/// Explains that the search for such a drive gave up; `resolution` is what the route was asked for with [m].
+/// Explains that the search for such a drive gave up.
 Obstruction explain_long_search(const Eigen::Vector3d& from, bool from_stop, const Eigen::Vector3d& to,
                                 const std::string& tray, double resolution);
 

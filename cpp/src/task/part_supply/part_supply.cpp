@@ -255,13 +255,15 @@ class PartSupply {
     return routes.between(problem_.start, problem_.goal).outcome == Outcome::solved;
   }
 
+  std::string first_tray(int stop) const { return plan_.regions[plan_.stops[stop].trays.front()].tray; }
+
   /// No drive leads from a stop, by its index, or the start (-1), to another, or to the goal (-1).
   bool obstructed_route(BaseRoutes& routes, int last_stop, int stop) {
     const Eigen::Vector3d from = last_stop < 0 ? problem_.start : plan_.stops[last_stop].pose;
     const Eigen::Vector3d to = stop < 0 ? problem_.goal : plan_.stops[stop].pose;
-    const std::string tray = stop < 0 ? "" : plan_.regions[plan_.stops[stop].trays.front()].tray;
+    const std::string tray = stop < 0 ? "" : first_tray(stop);
     if (routes.between(from, to).outcome != Outcome::timeout)
-      return obstructed(explain_route(from, last_stop >= 0, to, tray));
+      return obstructed(explain_route(from, last_stop >= 0, to, tray, problem_.options.route_resolution));
     plan_.outcome = Outcome::timeout;
     return obstructed(explain_long_search(from, last_stop >= 0, to, tray, problem_.options.route_resolution));
   }
@@ -354,8 +356,7 @@ class PartSupply {
       if (monitor_.stopped()) return false;
       if (unloading.to_goal.outcome != Outcome::solved) return obstructed_route(routes, stop, -1);
       if (returns && unloading.back.outcome != Outcome::solved)
-        return obstructed(
-            explain_route(problem_.goal, false, pose, plan_.regions[plan_.stops[stop].trays.front()].tray));
+        return obstructed(explain_route(problem_.goal, false, pose, first_tray(stop), problem_.options.route_resolution));
       plan_.unloadings.push_back(std::move(unloading));
     }
     return true;

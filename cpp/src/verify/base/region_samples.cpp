@@ -1,7 +1,9 @@
-// Draws base poses in the regions of a plan and beside them: the proof of the least number of stops rests on them.
+// Draws base poses in the regions of a plan, beside them and elsewhere: the proof of the least number of stops rests on
+// them.
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/parallel.hpp"
@@ -20,6 +22,8 @@ constexpr double kPiece = 0.75;         // Largest share of the cells of one pie
 constexpr double kClaimed = 0.9;        // Least share of the poses drawn in the disc that a stop claims.
 constexpr std::size_t kFewest = 5;      // Fewer samples than this tell nothing.
 constexpr int kFirstLook = 5;           // Cells drawn in each piece of the border, more where these serve.
+constexpr int kAround = 2;              // So many rows and columns around a cell that serves are looked at as well.
+constexpr std::size_t kPatch = 12;      // Fewest cells around it that a planner should have found.
 
 struct Cell {
   int layer, ix, iy;
@@ -30,7 +34,7 @@ bool lists(const CheckedTray& tray, double heading) {
                      [&](double known) { return std::abs(wrap_angle(known - heading)) <= 1e-6; });
 }
 
-/// Cells of one region, and those beside it that were searched for its tray.
+/// Cells of one region, and those outside of it that were searched for its tray: beside it, or farther off.
 class RegionCells {
  public:
   RegionCells(const PlanToCheck& plan, const CheckedRegion& region) : plan_(plan), grid_(plan.grid), region_(region) {
@@ -39,11 +43,10 @@ class RegionCells {
       for (int iy = 0; iy < grid_.ny; ++iy) {
         for (int ix = 0; ix < grid_.nx; ++ix) {
           const Cell cell{layer, ix, iy};
-          if (has(layer, ix, iy)) {
+          if (has(layer, ix, iy))
             inside.push_back(cell);
-          } else if (searched != plan.searched.end() && beside_region(cell) && was_searched(cell, searched->second)) {
-            beside.push_back(cell);
-          }
+          else if (searched != plan.searched.end() && was_searched(cell, searched->second))
+            (beside_region(cell) ? beside : farther).push_back(cell);
         }
       }
     }
@@ -56,7 +59,7 @@ class RegionCells {
   }
 
   /// The cells beside the region by the side of it on which they lie: those of each heading in sectors around its
-  /// middle.
+  /// middle, sides of few cells together.
   std::vector<std::vector<Cell>> border() const {
     std::vector<Eigen::Vector3d> middles(grid_.headings.size(), Eigen::Vector3d::Zero());  // sums, and how many
     for (const Cell& cell : inside) middles[cell.layer] += Eigen::Vector3d(cell.ix, cell.iy, 1);
@@ -67,10 +70,47 @@ class RegionCells {
       const int sector = static_cast<int>(std::floor((angle / mmgrasp::detail::kPi + 1) / 2 * kSectors));
       pieces[cell.layer * kSectors + std::clamp(sector, 0, kSectors - 1)].push_back(cell);
     }
-    return pieces;
+    std::vector<std::vector<Cell>> large(grid_.headings.size());  // at first what is left of each heading
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      std::vector<Cell>& rest = large[i / kSectors];
+      if (pieces[i].size() < kFewest)
+        rest.insert(rest.end(), pieces[i].begin(), pieces[i].end());
+      else
+        large.push_back(std::move(pieces[i]));
+    }
+    return large;
   }
 
-  std::vector<Cell> inside, beside;
+  /// The cells farther off, by heading: first those places that the region has at other headings, then all.
+  std::vector<std::vector<Cell>> elsewhere() const {
+    const std::size_t plane = static_cast<std::size_t>(grid_.nx) * grid_.ny;
+    std::vector<bool> known(plane, false);
+    for (const Cell& cell : inside) known[index(0, cell.ix, cell.iy)] = true;
+    std::vector<std::vector<Cell>> layers(2 * grid_.headings.size());
+    for (const Cell& cell : farther) {
+      layers[2 * cell.layer + 1].push_back(cell);
+      if (known[index(0, cell.ix, cell.iy)]) layers[2 * cell.layer].push_back(cell);
+    }
+    return layers;
+  }
+
+  bool has_layer(int layer) const {
+    return std::any_of(inside.begin(), inside.end(), [&](const Cell& cell) { return cell.layer == layer; });
+  }
+
+  /// The cells outside of the region around one of them, itself included.
+  std::vector<Cell> around(const Cell& middle) const {
+    std::vector<Cell> near;
+    for (const std::vector<Cell>* cells : {&beside, &farther}) {
+      std::copy_if(cells->begin(), cells->end(), std::back_inserter(near), [&](const Cell& cell) {
+        return cell.layer == middle.layer && std::abs(cell.ix - middle.ix) <= kAround &&
+               std::abs(cell.iy - middle.iy) <= kAround;
+      });
+    }
+    return near;
+  }
+
+  std::vector<Cell> inside, beside, farther;
 
  private:
   bool has(int layer, int ix, int iy) const {
@@ -145,18 +185,19 @@ class RegionCheck {
     if (plan_.padded) return;
     Look all;
     for (const std::vector<Cell>& piece : cells.border()) {
-      if (piece.size() < kFewest) continue;
       Look look = looked_at(cells, piece, kFirstLook, parts);
       all += look;
+      if (piece.size() < kFewest) continue;
       if (look.share() > kOutside) look += looked_at(cells, piece, count, parts);
       if (context_.monitor.stopped()) return;
       if (look.share() <= kPiece) continue;
-      const Eigen::Vector3d middle = cells.pose(piece[piece.size() / 2], 0.5, 0.5);
-      incomplete(where, look,
-                 ", around (" + text(middle.x()) + ", " + text(middle.y()) + ") at heading " + text(middle.z()) + ",");
+      incomplete(where, look, "beside it, around " + text_of(cells, piece[piece.size() / 2]));
       return;  // one piece that is missing is enough
     }
-    if (all.share() > kOutside) incomplete(where, all, "");
+    if (cells.beside.size() >= kFewest && all.share() > kOutside)
+      incomplete(where, all, "beside it");
+    else
+      missing_patch(cells, where, parts);
   }
 
   /// The disc that a stop claims, beyond its uncertainty disc, which is checked more closely.
@@ -192,6 +233,29 @@ class RegionCheck {
     }
   };
 
+  /// Cells are drawn wherever the tray was searched; where one serves, those around it mostly must not.
+  void missing_patch(const RegionCells& cells, const std::string& where, const std::vector<int>& parts) {
+    const int count = context_.options.region_samples;
+    for (const std::vector<Cell>& layer : cells.elsewhere()) {
+      if (layer.empty()) continue;
+      const int looks = cells.has_layer(layer.front().layer) ? kFirstLook : count;
+      for (const Cell& cell : drawn(layer, looks, rng_)) {
+        if (context_.monitor.stopped()) return;
+        if (!whole_cell_serves(cells, cell, parts)) continue;
+        const std::vector<Cell> patch = cells.around(cell);
+        if (patch.size() < kPatch) continue;
+        const Look look = looked_at(cells, patch, count, parts);
+        if (context_.monitor.stopped()) return;
+        if (look.share() > kPiece) return incomplete(where, look, "outside of it, around " + text_of(cells, cell));
+      }
+    }
+  }
+
+  static std::string text_of(const RegionCells& cells, const Cell& cell) {
+    const Eigen::Vector3d middle = cells.pose(cell, 0.5, 0.5);
+    return "(" + text(middle.x()) + ", " + text(middle.y()) + ") at heading " + text(middle.z()) + ",";
+  }
+
   Look looked_at(const RegionCells& cells, const std::vector<Cell>& piece, int count, const std::vector<int>& parts) {
     Look look;
     for (const Cell& cell : drawn(piece, count, rng_)) {
@@ -205,7 +269,7 @@ class RegionCheck {
   void incomplete(const std::string& region, const Look& look, const std::string& place) {
     faults_.push_back({"region-incomplete", region,
                        "from " + std::to_string(look.good) + " of " + std::to_string(look.tried) +
-                           " cells drawn beside it" + place +
+                           " cells drawn " + place +
                            " all parts can be grasped: the least number of stops is not proven"});
   }
 

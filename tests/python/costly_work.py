@@ -33,6 +33,15 @@ def slab(side: int = 500) -> mg.Mesh:
     return mg.Mesh.from_arrays(*lw.grid(side))
 
 
+def long_operation() -> mg.gripper_design.AssemblyOperation:
+    """A part that slides through another one in small steps."""
+    design, mesh = mg.gripper_design, slab(300)
+    path = [mg.pose([0, 0, 0.5 * i / 100_000]) for i in range(100_000)]
+    return design.AssemblyOperation(
+        [design.PlacedMesh("part", mesh)], [design.PlacedMesh("other", mesh, mg.pose([0.3, 0, -1e-3]))], path
+    )
+
+
 def on_sphere(count: int = 300_000) -> mg.Mesh:
     corners = rng.normal(size=(count, 3))
     corners /= np.linalg.norm(corners, axis=1)[:, None]

@@ -26,7 +26,7 @@ _LARGEST_LIST = 100_000_000
 
 class OutputFolder:
     """One folder, made ready before the work and filled after it. `own`: patterns of the names that the command writes, `folder`:
-    which of them are folders of files.
+    which of them are folders of files, `edited`: files that were changed since may be replaced (a command that goes on with them looks itself).
 
     Everything is written beside its place and moved there at the end; what files.json lists of an earlier run goes. A folder that holds
     files under our names which it does not list is refused: they could be somebody's, and played for the new run's. So is one where a
@@ -34,7 +34,9 @@ class OutputFolder:
     names while the command works is not replaced either.
     """
 
-    def __init__(self, path: Path, own: tuple[str, ...] = PLAN_FILES, folder: str = "trajectories") -> None:
+    def __init__(
+        self, path: Path, own: tuple[str, ...] = PLAN_FILES, folder: str = "trajectories", *, edited: bool = False
+    ) -> None:
         self.path = Path(os.path.realpath(path))
         self._own = own
         self._folder = folder
@@ -48,10 +50,10 @@ class OutputFolder:
             raise IoError(
                 f"{path}: holds {_some(foreign)}, which {LIST} there does not list: remove them or choose another folder"
             )
-        edited = sorted(name for name, known in listed.items() if known and _digest(self.path / name) not in known)
-        if edited:
+        changed = sorted(name for name, known in listed.items() if known and _digest(self.path / name) not in known)
+        if changed and not edited:
             raise IoError(
-                f"{path}: holds {_some(edited)}, changed since mmgrasp wrote it: move it away or choose another folder"
+                f"{path}: holds {_some(changed)}, changed since mmgrasp wrote it: move it away or choose another folder"
             )
         self._known = self._marks()
 

@@ -45,7 +45,7 @@ _MOST_LINES = 10
 
 def run_scan(arguments: argparse.Namespace, console: Console) -> int:
     """`mmgrasp scan`: depth frames to a map with its objects; the exit code."""
-    folder = OutputFolder(arguments.out, SCAN_FILES)
+    folder = OutputFolder(arguments.out, SCAN_FILES, edited=True)
     if folder.path == Path(os.path.realpath(arguments.frames)):
         raise InvalidInput(f"--out {arguments.out}: must be another folder than that of the frames")
     with Reporter(console) as report:

@@ -75,4 +75,6 @@ QUICK: dict[str, Callable[[], dict[str, Any]]] = {
     "plan_platform_locations": lambda: {"time_limit": 0.5, "samples": 2},
     "solve_set_cover": lambda: {"elements": 1, "sets": [[0]], "time_limit": 1.0},
     "optimize_grasp": lambda: {"max_evaluations": 20},
+    "segment_mesh": lambda: {"faces": 500},
+    "next_view": lambda: {"candidates": 2, "draws": 1, "max_width": 16, "samples": 5},
 }  # fmt: skip

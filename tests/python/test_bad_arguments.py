@@ -16,6 +16,7 @@ import mmgrasp as mg
 from argument_calls import CALLS, Parameter, callable_of, looked_up, other_arguments
 from argument_objects import ARM, GRID, OBJECTS, POSE, X_Y_THETA, Q
 from argument_values import VALUES
+from number_tables import QUICK
 
 # Images and points of scans may hold NaN; a scale may be a number.
 OTHER_RULES = (
@@ -69,8 +70,9 @@ def value_of(argument: Argument) -> np.ndarray:
 
 
 def call(argument: Argument, value: Any) -> Any:
+    short = QUICK["next_view"]() if argument.function == "next_view" else {}
     others = other_arguments(argument.function, argument.name, argument.given)
-    return callable_of(argument.function)(**{argument.name: value, **others})
+    return callable_of(argument.function)(**{argument.name: value, **others, **short})
 
 
 def is_any_number(argument: Argument) -> bool:

@@ -137,6 +137,7 @@ def test_speckles_are_refused_with_their_number(tmp_path: Path) -> None:
         read_floor_map(write_map(tmp_path, image))
 
 
+@pytest.mark.slow
 def test_a_room_from_a_map_is_planned_as_one_of_boxes(small: dict[str, Any], write: Any) -> None:
     """The same walls, once as boxes and once as cells of a map: the same plan, and verify compares the map's cells."""
     image = np.full((60, 60), WHITE)

@@ -323,7 +323,7 @@ USES: dict[str, Callable[[mg.Mesh], Any]] = {
     "LinkShape": lambda m: repr(mg.LinkShape(m).bounds),
     "resting_poses": lambda m: mg.mapping.resting_poses([mg.LinkShape(m)]),
     "sample_grasps": lambda m: mg.grasping.sample_grasps([mg.LinkShape(m)], gripper(), mesh_samples=20),
-    "segment_mesh": lambda m: mg.grasping.segment_mesh(m, threads=1),
+    "segment_mesh": lambda m: mg.grasping.segment_mesh(m, faces=500, threads=1),
     "shape_diameters": lambda m: mg.grasping.shape_diameters(m, threads=1),
     "MeshDistanceField": lambda m: mg.collision.MeshDistanceField(m).distances([[0.0, 0, 0]]),
     "render_depth": lambda m: mg.mapping.render_depth(

@@ -24,6 +24,10 @@ BROKE = {
 SEEDS = [1, 2, 3, 4, 5, 6, *BROKE]
 
 
+def test_a_solved_plan_holds(tmp_path: Path) -> None:
+    assert try_out(odd_scenario(66), tmp_path) == ("solved", [])
+
+
 @pytest.mark.slow
 def test_solved_plans_hold(tmp_path: Path) -> None:
     outcomes = {}

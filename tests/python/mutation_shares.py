@@ -151,8 +151,8 @@ def table(of_each: int) -> str:
             reasons.append(
                 f"| {name}: {field if case.any_holds else f'`{field}`'} | {count} | {share(count, len(tried))} | {why} |"
             )
-    refused, tried = all_together(of_each)
-    lines += ["", f"The last two together: {refused} of {tried}, {share(refused, tried)}."]
+    good, count = all_together(of_each)
+    lines += ["", f"The last two together: {good} of {count}, {share(good, count)}."]
     return "\n".join([*lines, "", *reasons])
 
 

@@ -71,7 +71,18 @@ def test_the_parser_was_read() -> None:
     assert not [(name, action.dest) for name, action in options() if action.type is None and not action.choices]
 
 
-NO_NUMBER = {"_path", "_plan", "_source", "_name", "_address", "_package", "_xacro_argument", "_mount", "_direction", "_base"}
+NO_NUMBER = {
+    "_path",
+    "_plan",
+    "_source",
+    "_name",
+    "_address",
+    "_package",
+    "_xacro_argument",
+    "_mount",
+    "_direction",
+    "_base",
+}
 
 
 @pytest.mark.parametrize(("command", "action"), options(), ids=lambda v: v if isinstance(v, str) else v.dest)

@@ -11,7 +11,6 @@ import yaml
 
 from file_fuzz import fuzz, read_plan_whole, read_scenario
 
-
 SIZES = [100, pytest.param(400, marks=pytest.mark.slow)]
 
 

@@ -8,7 +8,6 @@ import pytest
 
 from key_fuzz import DOORS, fuzz
 
-
 SIZES = [(door, 40) for door in DOORS if door != "scanned"]  # where maps are read for each, there is no quick size
 SLOW = [pytest.param(door, 30 if door == "scanned" else 120, marks=pytest.mark.slow) for door in DOORS]
 

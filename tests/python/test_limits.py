@@ -33,6 +33,10 @@ BEYOND: dict[str, list[tuple[tuple[str | int, ...], Any, str]]] = {
         (("trays", 0, "parts"), {"type": "bracket", "grid": [11, 91], "spacing": [0.2, 0.2]}, "1000"),
         (("trays", 0, "parts"), [{"type": "bracket", "xyz": [0, 0]}] * 1001, "1000"),
     ],
+    "size and place of a tray": [
+        (("trays", 0, "size"), [0.3, 100.1, 0.1], "metres"),
+        (("trays", 0, "pose"), {"xyz": [0, 110.1, 0.5]}, "metres"),
+    ],
     "trays of a scenario": [(("trays",), [{"name": "a"}] * 1001, "1000 trays")],
     "obstacles of a scenario": [(("obstacles",), [{"name": "a", "sphere": 0.1}] * 10_001, "10000 obstacles")],
     "headings of a tray": [(("trays", 0, "headings"), [0.017 * i for i in range(361)], "360 headings")],

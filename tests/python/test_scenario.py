@@ -139,11 +139,17 @@ BAD = [
         ["left_gripper_finger_link", "base_link"],
         ["gripper.finger_links[1]", "no part of the hand"],
     ),
-    ("gripper.closing_speed", 0, ["gripper.closing_speed", "> 0"]),
+    ("gripper.closing_speed", 0, ["gripper.closing_speed", ">= 0.0001"]),
     ("gripper.closing_speed", 11, ["gripper.closing_speed", "10"]),
     ("place_region.size", [0.3, 1e-300, 0.1], ["place_region.size[1]", "at least 1e-06"]),
     ("name", "\x1b[31mred", ["name", "control characters"]),
     ("trays.0.name", "x" * 5000, ["trays[0].name", "at most 200 characters"]),
+    ("trays.0.size", [300, 400, 100], ["trays[0].size", "at most 100 m", "lengths are in metres"]),
+    (
+        "trays.0.pose.xyz",
+        [2780, -1300, 706],
+        ["trays[0].pose", "2780 m off", "workspace, 100 m", "lengths are in metres"],
+    ),
     ("trays.0.parts.spacing", [0.02, 0.08], ["trays[0].parts", "overlaps part"]),
     ("trays.0.pose.xyz", [2.93, -1.3, 0.706], ["trays[0].parts", "A/", "overlaps wall east"]),
     (

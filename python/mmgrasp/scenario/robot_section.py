@@ -190,7 +190,9 @@ def read_setup(sections: RobotSections, progress: Progress = None) -> RobotSetup
     for key in ("finger_links", "cup_links"):
         if key in sections.gripper:
             _check_finger_links(sections.gripper[key], arm, tool_link, home)
-    speed = sections.gripper["closing_speed"].number(above=0, most=10) if "closing_speed" in sections.gripper else 0.1
+    speed = (
+        sections.gripper["closing_speed"].number(least=1e-4, most=10) if "closing_speed" in sections.gripper else 0.1
+    )
     place_region = _read_place_region(sections.place_region, bin_pose)
     return RobotSetup(robot, arm, group, gripper, place_region, home, other, speed)
 

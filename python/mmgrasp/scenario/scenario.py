@@ -315,10 +315,22 @@ def _in_world(obstacles: list[Obstacle]) -> list[LinkShape]:
     return [moved(s, o.pose) for o in obstacles for s in o.shapes]
 
 
+LONGEST_ARM = 10.0  # [m]
+
+
 def _read_trays(root: Node, types: dict[str, PartType], setup: RobotSetup, scans: ScanReader) -> list[TraySetup]:
     if len(root["trays"].elements()) > MOST_TRAYS:
         root["trays"].fail(f"must be at most {MOST_TRAYS} trays: plan for some of them at a time")
-    trays = [read_tray(node, types, setup.gripper, scans) for node in root["trays"].elements()]
+    workspace = setup.robot.base_limits["workspace"]
+    trays = []
+    for node in root["trays"].elements():
+        tray = read_tray(node, types, setup.gripper, scans)
+        farthest = float(np.abs(tray.tray.T_world_tray[:2, 3]).max())
+        if farthest > workspace + LONGEST_ARM:
+            node["pose"].fail(
+                f"stands {farthest:g} m off, where no base within base_limits.workspace, {workspace:g} m, reaches it: lengths are in metres"
+            )
+        trays.append(tray)
     if not any(tray.targets for tray in trays):
         root["trays"].fail("at least one part of one tray must be a target")
     return trays

@@ -20,6 +20,7 @@ from .tray_body import BODY_KEYS, STEEPEST, WALL, TrayBody, read_tray_body, tilt
 
 MOST_PARTS = 1000  # in one tray
 MOST_HEADINGS = 360  # of one tray
+LARGEST_TRAY = 100.0  # [m]
 GAP = 0.001  # parts rest this far above the floor, so that nothing touches at rest [m]
 
 
@@ -137,6 +138,8 @@ def read_tray(node: Node, types: dict[str, PartType], gripper: Hand, scans: Scan
     node.mapping("name pose size", f"parts scan headings targets {BODY_KEYS}")
     name, T_world_tray = node["name"].label(), node["pose"].pose()
     body, shapes, own = read_tray_body(node, find_file)
+    if max(body.size) > LARGEST_TRAY:
+        node["size"].fail(f"a tray must be at most {LARGEST_TRAY:g} m long, wide and high: lengths are in metres")
     if tilt(T_world_tray) > STEEPEST:
         node["pose"].fail(f"a tray must not be tilted by more than {STEEPEST:g} degrees")
     if ("parts" in node) == ("scan" in node):

@@ -20,8 +20,8 @@ struct MMGRASP_EXPORT PlanCheckOptions {
   double rotation_tolerance = 1e-3;  ///< How far a grasp may be turned [rad]; at most 0.1.
   int samples = 1000;                ///< Base poses drawn in the uncertainty disc of each stop; > 0.
   double required_rate = 0.999;      ///< Share of them from which every target part has a grasp; in (0, 1].
-  /// Base poses drawn in each region, and cells drawn beside it and elsewhere; also poses drawn between the uncertainty disc of a
-  /// stop and the radius that the plan claims. 0: none.
+  /// Base poses drawn in each region, and cells drawn beside it and elsewhere; also poses drawn between the uncertainty
+  /// disc of a stop and the radius that the plan claims. 0: none.
   int region_samples = 20;
   unsigned seed = 20240607;
   int threads = 0;

@@ -356,7 +356,8 @@ class PartSupply {
       if (monitor_.stopped()) return false;
       if (unloading.to_goal.outcome != Outcome::solved) return obstructed_route(routes, stop, -1);
       if (returns && unloading.back.outcome != Outcome::solved)
-        return obstructed(explain_route(problem_.goal, false, pose, first_tray(stop), problem_.options.route_resolution));
+        return obstructed(
+            explain_route(problem_.goal, false, pose, first_tray(stop), problem_.options.route_resolution));
       plan_.unloadings.push_back(std::move(unloading));
     }
     return true;

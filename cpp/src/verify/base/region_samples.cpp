@@ -268,9 +268,8 @@ class RegionCheck {
 
   void incomplete(const std::string& region, const Look& look, const std::string& place) {
     faults_.push_back({"region-incomplete", region,
-                       "from " + std::to_string(look.good) + " of " + std::to_string(look.tried) +
-                           " cells drawn " + place +
-                           " all parts can be grasped: the least number of stops is not proven"});
+                       "from " + std::to_string(look.good) + " of " + std::to_string(look.tried) + " cells drawn " +
+                           place + " all parts can be grasped: the least number of stops is not proven"});
   }
 
   bool serves(const Eigen::Vector3d& pose, const std::vector<int>& parts, bool thoroughly = false) {

@@ -36,6 +36,8 @@ def test_changes_of_a_plan_are_refused(small: dict[str, Any], write: Any, every:
     for change in result.left:
         if pattern(change.field) == "drive_by.motions[].accelerations[][]" and int(change.field[5]) >= 3:
             assert abs(change.new - at(plan, change.field)) <= 0.01 * limits[int(change.field[5]) - 3], change
+        if pattern(change.field) == "picks[].motions[].opening":
+            assert at(plan, change.field[:4])["kind"] == "retreat", change
         if pattern(change.field) == "picks[].motions[].accelerations[][]" and change.kind in ("sign", "doubled"):
             assert abs(at(plan, change.field)) <= 0.01 * limits[int(change.field[6])], change
 

@@ -26,7 +26,7 @@ _LARGEST_LIST = 100_000_000
 
 class OutputFolder:
     """One folder, made ready before the work and filled after it. `own`: patterns of the names that the command writes, `folder`:
-    which of them are folders of files, `edited`: files that were changed since may be replaced (a command that goes on with them looks itself).
+    which of them are folders of files, `edited`: files that were changed since may be replaced, since a command that goes on with them looks itself; they get no checksums.
 
     Everything is written beside its place and moved there at the end; what files.json lists of an earlier run goes. A folder that holds
     files under our names which it does not list is refused: they could be somebody's, and played for the new run's. So is one where a
@@ -50,8 +50,9 @@ class OutputFolder:
             raise IoError(
                 f"{path}: holds {_some(foreign)}, which {LIST} there does not list: remove them or choose another folder"
             )
+        self._edited = edited
         changed = sorted(name for name, known in listed.items() if known and _digest(self.path / name) not in known)
-        if changed and not edited:
+        if changed:
             raise IoError(
                 f"{path}: holds {_some(changed)}, changed since mmgrasp wrote it: move it away or choose another folder"
             )
@@ -110,7 +111,7 @@ class OutputFolder:
 
     def _take_over(self, draft: Path, added: bool, replacing: str) -> None:
         files = {str(p.relative_to(draft).as_posix()): p for p in draft.rglob("*") if p.is_file() and p.name != LIST}
-        written = {name: {_digest(path)} for name, path in files.items()}
+        written = {name: set() if self._edited else {_digest(path)} for name, path in files.items()}
         self._refuse_what_came()
         old = {name: known for name, known in self._listed().items() if name != LIST}
         new = {name: known for name, known in old.items() if added and not fnmatchcase(name, replacing)} | written

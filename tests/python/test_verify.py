@@ -11,6 +11,7 @@ import yaml
 
 import mmgrasp as mg
 import plan_breaks
+from mmgrasp.part_supply.consistency import masks
 from mmgrasp.part_supply.plan_writer import runs_of
 
 
@@ -81,6 +82,21 @@ def test_regions_cut_off_on_one_side_are_refused(
         plan["scenario"]["padding"] = {"links": 0.0, "by_name": {}}
     codes = {fault.code for fault in mg.verify_plan(plan, samples=1).faults}
     assert "region-incomplete" in codes
+
+
+def test_regions_that_lack_their_outermost_cells_are_refused(small_plan_dict: dict[str, Any]) -> None:
+    import numpy as np
+
+    plan = copy.deepcopy(small_plan_dict)
+    for tray, layers in masks(plan).items():
+        region = next(one for one in plan["regions"] if one["tray"] == tray)
+        inner = layers.copy()
+        for axis in (1, 2):
+            for step in (-1, 1):
+                inner &= np.roll(layers, step, axis)
+        assert 0.5 * layers.sum() < inner.sum() < layers.sum()
+        region["cells"] = {str(i): runs_of(layer.astype(int)) for i, layer in enumerate(inner)}
+    assert "region-incomplete" in {fault.code for fault in mg.verify_plan(plan, samples=1).faults}
 
 
 def small_regions(plan: dict[str, Any], cells: int) -> None:

@@ -46,7 +46,7 @@ CASES = {
     "scenario": Case("a scenario beside its plan", scenario_mutations.HARMLESS, 98.0),
 }
 TOGETHER, LEAST_TOGETHER = ("beside", "scenario"), 99.0
-"""Of all changes of a plan and of a scenario, each beside the other, so many must be refused [%]."""
+"""Cases whose changes are counted together, and the share of them that must be refused [%]."""
 Judge = Callable[[dict[str, Any]], dict[str, bool]]
 
 

@@ -22,6 +22,7 @@ constexpr double kPiece = 0.75;         // Largest share of the cells of one pie
 constexpr double kClaimed = 0.9;        // Least share of the poses drawn in the disc that a stop claims.
 constexpr std::size_t kFewest = 5;      // Fewer samples than this tell nothing.
 constexpr int kFirstLook = 5;           // Cells drawn in each piece of the border, more where these serve.
+constexpr double kBeyond = 0.02;        // Corners of such a cell are looked at so much of its size farther out.
 constexpr int kAround = 2;              // So many rows and columns around a cell that serves are looked at as well.
 constexpr std::size_t kPatch = 12;      // Fewest cells around it that a planner should have found.
 
@@ -289,9 +290,12 @@ class RegionCheck {
     return good;
   }
 
-  /// Whether a cell serves the parts at its corners and its middle, which is how planners look at a cell.
+  /// Whether a cell serves the parts at its corners and its middle, which is how planners look at a cell. Corners are
+  /// taken a little farther out: where the robot just touches something at one, either answer is right.
   bool whole_cell_serves(const RegionCells& cells, const Cell& cell, const std::vector<int>& parts) {
-    constexpr std::array<std::array<double, 2>, 5> kPlaces = {{{0, 0}, {1, 1}, {0, 1}, {1, 0}, {0.5, 0.5}}};
+    constexpr double kLow = -kBeyond, kHigh = 1 + kBeyond;
+    constexpr std::array<std::array<double, 2>, 5> kPlaces = {
+        {{kLow, kLow}, {kHigh, kHigh}, {kLow, kHigh}, {kHigh, kLow}, {0.5, 0.5}}};
     return std::all_of(kPlaces.begin(), kPlaces.end(),
                        [&](const auto& place) { return serves(cells.pose(cell, place[0], place[1]), parts); });
   }

@@ -18,6 +18,7 @@ import yaml
 import mmgrasp as mg
 from mmgrasp._files import ASSETS
 
+ENTRY = "import sys, mmgrasp_command; sys.exit(mmgrasp_command.main())"  # the command; -m loads the package first
 LONGEST = 6.0  # [s]; a run takes about as long
 SIGNALS = (signal.SIGKILL, signal.SIGINT, signal.SIGTERM)
 WAYS: tuple[list[str], ...] = ([], ["--no-pictures"], ["--drive-by"])
@@ -55,7 +56,7 @@ def fault(out: Path, said: str) -> str:
 
 
 def run(scenario: Path, out: Path, *more: str) -> list[str]:
-    return [sys.executable, "-m", "mmgrasp", "plan", str(scenario), "-o", str(out), *more]
+    return [sys.executable, "-c", ENTRY, "plan", str(scenario), "-o", str(out), *more]
 
 
 def main() -> int:

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "arrays.hpp"
+#include "long_call.hpp"
 #include "mmgrasp/core/detail/stopwatch.hpp"
 
 namespace mmgrasp::python {
@@ -29,7 +30,7 @@ void in_pieces(Eigen::Index rows, Work&& work) {
     const Eigen::Index count = std::min(size, rows - first);
     const detail::Stopwatch watch;
     {
-      const py::gil_scoped_release release;
+      const Unlocked unlocked;
       work(first, count);
     }
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();

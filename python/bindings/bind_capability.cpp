@@ -108,8 +108,7 @@ void bind_map(py::module_& m) {
           "save",
           [](const CapabilityMap& map, const PathLike& path) {
             const std::string name = path_argument(path, "path");
-            py::gil_scoped_release release;
-            map.save(name);
+            interruptible([&] { map.save(name); });
           },
           "path"_a, "Writes a folder of .npy files and meta.json.")
       .def_static(

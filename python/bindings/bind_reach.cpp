@@ -96,10 +96,7 @@ py::array view(const py::object& owner, const T* data, std::vector<py::ssize_t> 
 
 NamedArrays arrays(const py::object& self) {
   const auto& database = self.cast<const ReachDatabase&>();
-  const ReachArrays a = [&] {
-    const py::gil_scoped_release release;
-    return checked_reach_arrays(database);
-  }();
+  const ReachArrays a = interruptible([&] { return checked_reach_arrays(database); });
   return py::dict("positions"_a = view(self, a.position_cells, {a.positions, 3}),
                   "position_first"_a = view(self, a.position_first, {a.positions + 1}),
                   "rotation_ids"_a = view(self, a.rotation_ids, {a.cells}),
@@ -329,8 +326,7 @@ void bind_reach(py::module_& m) {
           "save",
           [](const ReachDatabase& db, const PathLike& path) {
             const std::string name = path_argument(path, "path");
-            py::gil_scoped_release release;
-            db.save(name);
+            interruptible([&] { db.save(name); });
           },
           py::arg("path"),
           "Writes a folder to a temporary name and renames it; raises IoError where something other than a database "

@@ -82,8 +82,7 @@ void bind_roadmap(py::module_& m) {
           "save",
           [](const Roadmap& roadmap, const PathLike& path) {
             const std::string file = path_argument(path, "path");
-            py::gil_scoped_release release;
-            roadmap.save(file);
+            interruptible([&] { roadmap.save(file); });
           },
           "path"_a, "To a temporary name first, then renamed.")
       .def("__len__", &Roadmap::size)

@@ -365,8 +365,7 @@ void bind_sdf(py::module_& m) {
           "save",
           [](const ProbabilisticSdf& sdf, const PathLike& path) {
             const std::string file = path_argument(path, "path");
-            py::gil_scoped_release release;
-            sdf.save(file);
+            interruptible([&] { sdf.save(file); });
           },
           "path"_a, "Writes a file of its own format. Raises IoError naming it.")
       .def_static(

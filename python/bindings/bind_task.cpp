@@ -432,8 +432,7 @@ void bind_plan_result(py::module_& m) {
       [](const PartSupplyProblem& problem, const ReachDatabase& database, const PartSupplyPlan& plan,
          const PathLike& path, const std::string& name, const std::string& source, double closing_speed) {
         const std::string file = path_argument(path, "path");
-        const py::gil_scoped_release release;
-        write_plan(problem, database, plan, file, {name, source, closing_speed});
+        interruptible([&] { write_plan(problem, database, plan, file, {name, source, closing_speed}); });
       },
       py::arg("problem"), py::arg("database"), py::arg("plan"), py::arg("path"), py::kw_only(),
       py::arg("name") = PlanFileOptions().name, py::arg("source") = PlanFileOptions().source,

@@ -326,6 +326,9 @@ void bind_verify(py::module_& top) {
                     "Fewer stops are not enough: proven again. Below minimal_stops: the least number is not decided.")
       .def_readonly("search_cut", &PlanCheckResult::search_cut,
                     "The search for shared regions ended at its limit, which lower_bound allows for.")
+      .def_readonly("regions_searched", &PlanCheckResult::regions_searched,
+                    "Cells were looked for that the regions lack; without it the numbers of stops hold for the regions "
+                    "as they stand.")
       .def_readonly("configurations_checked", &PlanCheckResult::configurations_checked, "How many were checked.")
       .def_property_readonly(
           "ok", [](const PlanCheckResult& r) { return r.faults.empty(); }, "There are no faults.")
@@ -337,6 +340,7 @@ void bind_verify(py::module_& top) {
             for (const StopRate& s : r.rates) rates.append(py::cast(s).attr("to_dict")());
             return py::dict("faults"_a = faults, "rates"_a = rates, "minimal_stops"_a = r.minimal_stops,
                             "lower_bound"_a = r.lower_bound, "search_cut"_a = r.search_cut,
+                            "regions_searched"_a = r.regions_searched,
                             "configurations_checked"_a = r.configurations_checked);
           },
           "As a dict of plain numbers, strings and lists, e.g. for JSON.")

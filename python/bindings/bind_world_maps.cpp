@@ -120,8 +120,7 @@ void bind_occupancy(py::module_& m) {
           "save",
           [](const OccupancyMap& map, const PathLike& path) {
             const std::string file = path_argument(path, "path");
-            py::gil_scoped_release release;
-            map.save(file);
+            interruptible([&] { map.save(file); });
           },
           "path"_a,
           "Writes OctoMap's format: .bt (occupied or free) or .ot (with probabilities). Raises IoError naming the "

@@ -11,6 +11,7 @@ namespace {
 // When the interpreter ends, threads of Python's own that come back from a long call are killed by unwinding their
 // stacks, which no C++ frame survives. So the calls of other threads are ended before, and their threads go to sleep.
 std::atomic<bool> g_closing{false};
+std::atomic<std::thread::id> g_closer;  // the thread that ends the interpreter: it never sleeps
 std::atomic<int> g_waiting{0};  // calls of any thread that have not gone to sleep
 
 struct Waiting {
@@ -24,15 +25,19 @@ constexpr std::chrono::milliseconds kPoll(30);
 constexpr int kMostPolls = 100;  // The interpreter waits this often for calls that do not end.
 
 void end_calls() {
+  g_closer = std::this_thread::get_id();
   g_closing = true;
   const py::gil_scoped_release release;
   for (int i = 0; i < kMostPolls && g_waiting > 0; ++i) std::this_thread::sleep_for(kPoll);
 }
 
-/// Threads that Python knows as its main one never sleep: they are what ends the interpreter.
-bool is_main_thread() {
-  const py::module_ threading = py::module_::import("threading");
-  return threading.attr("current_thread")().is(threading.attr("main_thread")());
+bool must_sleep() {
+  return g_closing && g_closer.load() != std::this_thread::get_id();
+}
+
+[[noreturn]] void sleep_for_ever() {
+  --g_waiting;
+  while (true) std::this_thread::sleep_for(std::chrono::hours(1));
 }
 
 }  // namespace
@@ -45,11 +50,10 @@ void end_calls_at_exit() {
 bool LongCall::wait() {
   const Waiting waiting;
   try {  // all that runs Python may raise KeyboardInterrupt, and nothing may leave before the thread has ended
-    const bool may_sleep = !is_main_thread();
     while (true) {
       {
         py::gil_scoped_release release;
-        if (may_sleep && g_closing) sleep_for_ever();
+        if (must_sleep()) leave();
         std::unique_lock lock(mutex_);
         if (changed_.wait_for(lock, kPoll, [this] { return done_; })) return true;
       }
@@ -63,14 +67,23 @@ bool LongCall::wait() {
   return false;
 }
 
-void LongCall::sleep_for_ever() {
+void LongCall::leave() {
   monitor_.stop.stop();
   {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return done_; });
   }
+  sleep_for_ever();
+}
+
+Unlocked::Unlocked() : state_(PyEval_SaveThread()) {
+  ++g_waiting;
+}
+
+Unlocked::~Unlocked() {
+  if (must_sleep()) sleep_for_ever();
   --g_waiting;
-  while (true) std::this_thread::sleep_for(std::chrono::hours(1));
+  PyEval_RestoreThread(state_);
 }
 
 void LongCall::hand_over_progress() {

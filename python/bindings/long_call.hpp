@@ -34,12 +34,17 @@ class LongCall {
 
   template <typename Function>
   auto run(Function&& work) -> decltype(work(std::declval<const Monitor&>())) {
-    std::optional<decltype(work(std::declval<const Monitor&>()))> result;
+    using Result = decltype(work(std::declval<const Monitor&>()));
+    constexpr bool kNothing = std::is_void_v<Result>;
+    std::optional<std::conditional_t<kNothing, bool, Result>> result;
     std::exception_ptr error;
     std::thread thread([&] {
       const detail::InterruptionScope scope(monitor_.stop);
       try {
-        result.emplace(work(monitor_));
+        if constexpr (kNothing)
+          work(monitor_);
+        else
+          result.emplace(work(monitor_));
       } catch (...) {
         error = std::current_exception();
       }
@@ -55,7 +60,7 @@ class LongCall {
     if (python_error) throw py::error_already_set();
     if (error) std::rethrow_exception(error);
     hand_over_progress();
-    return std::move(*result);
+    if constexpr (!kNothing) return std::move(*result);
   }
 
  private:
@@ -63,7 +68,7 @@ class LongCall {
   /// stop.
   bool wait();
   /// For a thread that the interpreter's end would kill: without the GIL.
-  [[noreturn]] void sleep_for_ever();
+  [[noreturn]] void leave();
   void hand_over_progress();
 
   py::object progress_;
@@ -85,6 +90,19 @@ auto interruptible(Work&& work) {
       return work();
   });
 }
+
+/// Without the GIL while it lives, for work of at most some tenths of a second: as with a LongCall, the end of the
+/// interpreter waits for it, and its thread goes to sleep then.
+class Unlocked {
+ public:
+  Unlocked();
+  ~Unlocked();
+  Unlocked(const Unlocked&) = delete;
+  Unlocked& operator=(const Unlocked&) = delete;
+
+ private:
+  PyThreadState* state_;
+};
 
 /// Registers with Python's atexit that long calls of other threads end before the interpreter does.
 void end_calls_at_exit();

@@ -11,6 +11,7 @@ import stat
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
+from typing import BinaryIO
 
 from ._core import IoError
 
@@ -195,9 +196,8 @@ def write_files(folder: Path, contents: dict[str, str], *patterns: str) -> list[
     the patterns: those of an older result could be taken for this one's."""
     older = sorted(p.name for pattern in patterns for p in folder.glob(pattern) if p.name not in contents)
     if older:
-        names = ", ".join(older[:3]) + (f" and {len(older) - 3} more" if len(older) > 3 else "")
         raise IoError(
-            f"{printable(os.fspath(folder))}: holds {printable(names)} of another result: remove them or choose another folder"
+            f"{printable(os.fspath(folder))}: holds {printable(some_of(older))} of another result: remove them or choose another folder"
         )
     for name, content in contents.items():
         write_file(folder / name, content)
@@ -236,6 +236,17 @@ def read_head(path: Path, count: int) -> bytes:
 
 
 def _read(path: Path, count: int | None, most: int | None) -> bytes:
+    with _regular_file(path) as file:
+        # Not read(most): Python sets aside as much memory as it is asked for.
+        fits = most is None or os.fstat(file.fileno()).st_size <= most
+        data = file.read(-1 if count is None else count) if fits else None
+        if data is None or (most is not None and len(data) > most):
+            raise IoError(f"{printable(os.fspath(path))}: cannot be read: is larger than {most} bytes")
+    return data
+
+
+@contextlib.contextmanager
+def _regular_file(path: Path) -> Iterator[BinaryIO]:
     shown = printable(os.fspath(path))
     try:
         with open(path, "rb", opener=_open_now) as file:
@@ -244,21 +255,22 @@ def _read(path: Path, count: int | None, most: int | None) -> bytes:
                 raise IoError(f"{shown}: cannot be read: is a folder")
             if not stat.S_ISREG(found.st_mode):
                 raise IoError(f"{shown}: cannot be read: is no regular file")
-            # Not read(most): Python sets aside as much memory as it is asked for.
-            data = file.read(count) if most is None or found.st_size <= most else None
+            yield file
     except OSError as error:
         if isinstance(error, IoError):
             raise
         raise IoError(f"{shown}: cannot be read: {error.strerror or error}") from None
     except ValueError as error:
         raise IoError(f"{shown}: cannot be read: {error}") from None
-    if data is None or (most is not None and len(data) > most):
-        raise IoError(f"{shown}: cannot be read: is larger than {most} bytes")
-    return data
 
 
 def _open_now(path: str, flags: int) -> int:
     return os.open(path, flags | os.O_NONBLOCK)  # a pipe without a writer does not block
+
+
+def some_of(names: list[str]) -> str:
+    """The first of the names, and how many more there are."""
+    return ", ".join(names[:3]) + (f" and {len(names) - 3} more" if len(names) > 3 else "")
 
 
 def printable(text: str) -> str:
@@ -270,4 +282,8 @@ def printable(text: str) -> str:
 
 def sha256_of(path: str | Path) -> str:
     """SHA-256 of a regular file; raises IoError."""
-    return hashlib.sha256(read_bytes(Path(path), LARGEST_FILE)).hexdigest()
+    found = hashlib.sha256()
+    with _regular_file(Path(path)) as file:
+        while block := file.read(1 << 20):
+            found.update(block)
+    return found.hexdigest()

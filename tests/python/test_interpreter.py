@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 import mmgrasp as mg
+from conftest import REPOSITORY
 from mmgrasp import _core
 
 
@@ -80,21 +81,32 @@ def test_pickles_come_back_to_the_last_bit() -> None:
 
 
 AT_EXIT = """
-import random, sys, threading, time
-import mmgrasp as mg
-draw = random.Random(1)
-sets = [[i % 300] + [draw.randrange(300) for _ in range(11)] for i in range(900)]
+import random, sys, tempfile, threading, time
+from pathlib import Path
+import mmgrasp as mg, numpy as np
+sys.path.insert(0, {tests!r})
+from argument_objects import ARM, OBJECTS, Q, occupancy_map
+folder = Path(tempfile.mkdtemp())
 def work():
-    mg.optim.solve_set_cover(300, sets, time_limit=1000)
-    print("came back")
+    while True:
+        {work}
 threading.Thread(target=work, daemon=True).start()
 time.sleep(0.5)
 print("leaving")
 """
 
+LONG_CALLS = {
+    "set cover": "mg.optim.solve_set_cover(300, [[i % 300] + [(7 * i * k) % 300 for k in range(11)] for i in range(900)], time_limit=1000)",
+    "rows": "ARM.fk_batch(np.tile(Q, (2000, 1)))",
+    "occupancy file": "occupancy_map().save(folder / 'a.bt')",
+    "roadmap file": "OBJECTS['Roadmap']().save(folder / 'a')",
+}
 
-def test_a_daemon_thread_inside_a_long_call_does_not_crash_the_end() -> None:
-    done = subprocess.run([sys.executable, "-c", AT_EXIT], capture_output=True, text=True, timeout=60)
+
+@pytest.mark.parametrize("work", LONG_CALLS.values(), ids=LONG_CALLS)
+def test_a_daemon_thread_inside_a_call_does_not_crash_the_end(work: str) -> None:
+    script = AT_EXIT.format(tests=str(REPOSITORY / "tests" / "python"), work=work)
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60)
     assert (done.returncode, done.stdout, done.stderr) == (0, "leaving\n", "")
 
 

@@ -155,3 +155,11 @@ def test_a_plan_survives_when_motions_in_passing_are_interrupted(small_path: Pat
     assert not (tmp_path / "drive_by.json").exists()
     assert "drive_by" not in json.loads((tmp_path / "plan.json").read_text())
     assert mg.verify_plan(tmp_path / "plan.json", samples=20).ok
+
+
+@pytest.mark.parametrize("delay", [0.1, 0.4, 1.0])
+def test_a_check_of_a_plan_can_be_interrupted(delay: float, small_plan_dict: dict[str, Any]) -> None:
+    timer = interrupt_soon(delay)
+    with pytest.raises(KeyboardInterrupt):
+        mg.verify_plan(small_plan_dict, samples=1_000_000, required_rate=1e-6, region_samples=100_000)
+    timer.join()

@@ -39,6 +39,10 @@ BEYOND: dict[str, list[tuple[tuple[str | int, ...], Any, str]]] = {
     ],
     "trays of a scenario": [(("trays",), [{"name": "a"}] * 1001, "1000 trays")],
     "obstacles of a scenario": [(("obstacles",), [{"name": "a", "sphere": 0.1}] * 10_001, "10000 obstacles")],
+    "size and place of an obstacle": [
+        (("obstacles",), [{"name": "a", "box": [1500, 80, 900]}], "metres"),
+        (("obstacles",), [{"name": "a", "sphere": 0.1, "pose": {"xyz": [0, 1001, 0]}}], "metres"),
+    ],
     "headings of a tray": [(("trays", 0, "headings"), [0.017 * i for i in range(361)], "360 headings")],
     "base grid": [
         (("options",), {"grid_resolution": 0.0009}, "grid_resolution"),
@@ -163,6 +167,8 @@ def try_json(small: dict[str, Any], folder: Path) -> None:
         ('{"a": NaN}', "no number"),
         ('{"a": ' + "9" * 301 + "}", "301 digits"),
         ("[" * 51 + "]" * 51, "more than 50 deep"),
+        ("[" + "[]," * 25_000_000 + "[]]", "50,000,000"),
+        ("{" + "".join(f'"{i}":0,' for i in range(100_000)) + '"0":0}', "given twice"),
     ]:
         file.write_text(text)
         with pytest.raises(mg.InvalidInput, match=words):

@@ -121,26 +121,66 @@ def test_files_that_were_edited_since_are_not_replaced(tmp_path: Path, name: str
     assert names(tmp_path) == {"plan.json", LIST}
 
 
-def test_a_run_that_was_killed_among_its_files_leaves_a_folder_that_can_be_filled(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize("done", range(6))
+def test_where_one_file_cannot_be_moved_all_stay_as_they_were(
+    done: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    fill(tmp_path, plan_json="1", trajectories__a_csv="1")
+    fill(tmp_path, plan_json="1", trajectories__a_csv="1", trajectories__old_csv="1")
+    before = {path: path.read_text() for path in tmp_path.rglob("*") if path.is_file() and path.name != LIST}
     replace, moved = os.replace, []
 
-    def killed(source: Path, target: Path) -> None:
-        if ".writing." in str(source) and ".writing." not in str(target) and Path(target).name != LIST:
+    def broken(source: Path, target: Path) -> None:
+        if ".writing." in f"{source}{target}" and Path(target).name != LIST:
             moved.append(target)
-            if len(moved) == 2:
-                raise OSError(errno.EIO, "killed here")
+            if len(moved) == done + 1:
+                raise OSError(errno.EIO, "broken here")
         replace(source, target)
 
-    monkeypatch.setattr(os, "replace", killed)
-    with pytest.raises(mg.IoError, match="killed here"):
-        fill(tmp_path, plan_json="2", trajectories__a_csv="2")
+    monkeypatch.setattr(os, "replace", broken)
+    with pytest.raises(mg.IoError, match="broken here"):
+        fill(tmp_path, plan_json="2", trajectories__a_csv="2", trajectories__b_csv="2")
     monkeypatch.setattr(os, "replace", replace)
-    assert {(tmp_path / name).read_text() for name in ("plan.json", "trajectories/a.csv")} == {"1", "2"}
+    assert {path: path.read_text() for path in tmp_path.rglob("*") if path.is_file() and path.name != LIST} == before
     fill(tmp_path, plan_json="3")
     assert names(tmp_path) == {"plan.json", LIST}
+
+
+KILLED = """
+import os, sys
+from pathlib import Path
+from mmgrasp.cli.output_folder import OutputFolder
+left, replace = int(sys.argv[2]), os.replace
+def killed(source, target):
+    global left
+    left -= 1
+    if left < 0:
+        os._exit(9)
+    replace(source, target)
+with OutputFolder(Path(sys.argv[1])).filled() as draft:
+    (draft / "trajectories").mkdir()
+    for name in ("plan.json", "trajectories/a.csv", "trajectories/b.csv"):
+        (draft / name).write_text("2")
+    os.replace = killed
+"""
+
+
+def test_a_run_that_is_killed_leaves_no_plan_beside_files_of_another(tmp_path: Path) -> None:
+    seen: set[str] = set()
+    for moves in range(12):
+        folder = tmp_path / str(moves)
+        fill(folder, plan_json="1", trajectories__a_csv="1", trajectories__old_csv="1")
+        code = subprocess.run([sys.executable, "-c", KILLED, folder, str(moves)]).returncode
+        files = {name: (folder / name).read_text() for name in names(folder) - {LIST} if ".writing." not in name}
+        plan = files.pop("plan.json", "none")
+        seen.add(plan)
+        assert plan == "none" or set(files.values()) == {plan}
+        assert plan != "2" or set(files) == {"trajectories/a.csv", "trajectories/b.csv"}
+        fill(folder, plan_json="3")
+        assert names(folder) == {"plan.json", LIST}
+        if code == 0:
+            break
+    assert code == 0
+    assert seen == {"1", "none", "2"}
 
 
 def test_lists_of_earlier_versions_are_read(tmp_path: Path) -> None:

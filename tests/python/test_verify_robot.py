@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import copy
 import re
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -79,10 +78,12 @@ def test_what_urdfdom_refuses_is_named(small_plan_dict: dict[str, Any]) -> None:
     assert "loose" in fault.message or "nowhere" in fault.message
 
 
-def test_plans_without_the_urdfs_are_read_from_the_composed_one(
-    small_plan_dict: dict[str, Any], small: dict[str, Any], write: Callable[..., Path]
+@pytest.mark.parametrize("gone", [("urdfs",), ("links",), ("urdfs", "links")])
+def test_plans_without_the_robot_as_it_was_read_are_refused(
+    gone: tuple[str, ...], small_plan_dict: dict[str, Any]
 ) -> None:
     plan = copy.deepcopy(small_plan_dict)
-    del plan["scenario"]["robot"]["urdfs"], plan["scenario"]["robot"]["links"]
-    verdict = mg.verify_plan(plan, scenario=write(small), samples=50)
-    assert verdict.ok, verdict.faults
+    for key in gone:
+        del plan["scenario"]["robot"][key]
+    with pytest.raises(mg.InvalidInput, match=rf"scenario\.robot.*{gone[0]}"):
+        mg.verify_plan(plan)

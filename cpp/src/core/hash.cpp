@@ -1,14 +1,22 @@
 #include "mmgrasp/core/hash.hpp"
 
+#include <algorithm>
 #include <cstdio>
+
+#include "mmgrasp/core/detail/interruption.hpp"
 
 namespace mmgrasp {
 
 Hasher& Hasher::add(const void* bytes, std::size_t size) {
+  constexpr std::size_t kPiece = 1 << 20;  // [bytes], about a millisecond
   const auto* data = static_cast<const unsigned char*>(bytes);
-  for (std::size_t i = 0; i < size; ++i) {
-    hash_ ^= data[i];
-    hash_ *= 0x100000001b3ull;
+  for (std::size_t first = 0; first < size; first += kPiece) {
+    if (first > 0) detail::throw_if_interrupted();
+    const std::size_t end = std::min(size, first + kPiece);
+    for (std::size_t i = first; i < end; ++i) {
+      hash_ ^= data[i];
+      hash_ *= 0x100000001b3ull;
+    }
   }
   return *this;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 
 namespace mmgrasp::verify::detail {
@@ -240,6 +241,7 @@ Touch Judge::attached_touch() const {
 }
 
 Touch Judge::touch(const Eigen::VectorXd& arm, double opening) {
+  mmgrasp::detail::throw_if_interrupted();
   place(arm, opening);
   if (Touch found = self_touch()) return found;
   if (Touch found = scene_touch()) return found;
@@ -247,6 +249,7 @@ Touch Judge::touch(const Eigen::VectorXd& arm, double opening) {
 }
 
 int Judge::fingers_touching_attached(const Eigen::VectorXd& arm, double opening) {
+  mmgrasp::detail::throw_if_interrupted();
   place(arm, opening);
   if (attached_ < 0) return 0;
   int touching = 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/parallel.hpp"
 #include "verify/compare_robots.hpp"
@@ -79,6 +80,7 @@ bool bodies_overlap(const PlacedBody& a, const PlacedBody& b) {
 std::vector<std::pair<std::size_t, std::size_t>> overlapping(const std::vector<PlacedBody>& bodies, std::size_t first) {
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
   for (std::size_t j = first; j < bodies.size(); ++j) {
+    mmgrasp::detail::throw_if_interrupted();
     for (std::size_t i = 0; i < j; ++i) {
       if (bodies_overlap(bodies[i], bodies[j])) pairs.emplace_back(i, j);
     }
@@ -99,6 +101,33 @@ void check_scene_at_rest(const PlanToCheck& plan, const Stage& stage, Faults& fa
     faults.push_back({"part-overlap", "part '" + stage.bodies[part].name + "'",
                       "overlaps '" + stage.bodies[other].name + "' by more than 1e-4 m"});
   }
+}
+
+void check_all(const PlanToCheck& plan, const PlanCheckOptions& options, const Monitor& monitor,
+               PlanCheckResult& result) {
+  ArmSetup setup;
+  std::vector<int> finger_links;
+  const std::shared_ptr<const RobotModel> robot = model_of(plan, result.faults);
+  if (!robot || !check_structure(plan, *robot, result.faults, setup, finger_links)) return;
+
+  Context context{plan, options, monitor, build_stage(plan, robot, setup, finger_links), {}, {}, {}};
+  for (std::size_t i = 0; i < plan.parts.size(); ++i) context.part_index[plan.parts[i].body.name] = static_cast<int>(i);
+  check_scene_at_rest(plan, *context.stage, result.faults);
+  check_pick_list(context, result.faults);
+  check_payload(plan, result.faults);
+  if (plan.suction.cups.empty()) {
+    check_grasp_openings(context, result.faults);
+  } else {
+    check_seals(plan, result.faults);
+  }
+  check_stops(context, result);
+  check_route(context, result.faults, result.configurations_checked);
+  check_arm_motions(context, result.faults, result.configurations_checked);
+  check_drive_by(context, result.faults, result.configurations_checked);
+  check_robustness(context, result.faults, result.rates, result.configurations_checked);
+  check_arrivals(context, result.faults, result.configurations_checked);
+  check_regions(context, result.faults, result.configurations_checked);
+  result.regions_searched = options.region_samples > 0 && !plan.padded;
 }
 
 }  // namespace
@@ -126,28 +155,11 @@ void PlanCheckOptions::check() const {
 PlanCheckResult check_plan(const PlanToCheck& plan, const PlanCheckOptions& options, const Monitor& monitor) {
   options.check();
   PlanCheckResult result;
-  ArmSetup setup;
-  std::vector<int> finger_links;
-  const std::shared_ptr<const RobotModel> robot = model_of(plan, result.faults);
-  if (!robot || !check_structure(plan, *robot, result.faults, setup, finger_links)) return result;
-
-  Context context{plan, options, monitor, build_stage(plan, robot, setup, finger_links), {}, {}, {}};
-  for (std::size_t i = 0; i < plan.parts.size(); ++i) context.part_index[plan.parts[i].body.name] = static_cast<int>(i);
-  check_scene_at_rest(plan, *context.stage, result.faults);
-  check_pick_list(context, result.faults);
-  check_payload(plan, result.faults);
-  if (plan.suction.cups.empty()) {
-    check_grasp_openings(context, result.faults);
-  } else {
-    check_seals(plan, result.faults);
+  const mmgrasp::detail::InterruptionScope scope(monitor.stop);
+  try {
+    check_all(plan, options, monitor, result);
+  } catch (const mmgrasp::detail::Interrupted&) {  // said below
   }
-  check_stops(context, result);
-  check_route(context, result.faults, result.configurations_checked);
-  check_arm_motions(context, result.faults, result.configurations_checked);
-  check_drive_by(context, result.faults, result.configurations_checked);
-  check_robustness(context, result.faults, result.rates, result.configurations_checked);
-  check_arrivals(context, result.faults, result.configurations_checked);
-  check_regions(context, result.faults, result.configurations_checked);
   // An answer that was not finished must not look like a good one.
   if (monitor.stopped()) result.faults.push_back({"stopped", "check", "was ended before everything was checked"});
   return result;

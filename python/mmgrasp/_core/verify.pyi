@@ -664,6 +664,11 @@ class PlanCheckResult:
         One a stop.
         """
     @property
+    def regions_searched(self) -> bool:
+        """
+        Cells were looked for that the regions lack; without it the numbers of stops hold for the regions as they stand.
+        """
+    @property
     def search_cut(self) -> bool:
         """
         The search for shared regions ended at its limit, which lower_bound allows for.

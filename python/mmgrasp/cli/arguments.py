@@ -440,20 +440,22 @@ _seed = _count(0, 2**31 - 1, "")
 _length = _Number(0, 1, "m")
 _voxel = _Number(1e-4, 10, "m")
 _megabytes = _Number(1, 1e7, "MB", scale=1e6)
-_coordinate = _Number(-1e6, 1e6, "")
+_coordinate = _Number(-1e6, 1e6, "m or rad")
 
 
 def _direction(text: str) -> list[float]:
     values = [_number(part) for part in text.split(",")]
     if len(values) != 3 or not all(abs(x) <= 1e6 for x in values) or not any(abs(x) > 1e-6 for x in values):
-        raise argparse.ArgumentTypeError(f"{text!r}: must be a direction X,Y,Z other than 0,0,0")
+        raise argparse.ArgumentTypeError(
+            f"{text!r}: must be a direction X,Y,Z other than 0,0,0, of numbers up to 1e+06"
+        )
     return values
 
 
 def _base(text: str) -> list[float]:
     values = [_number(part) for part in text.split(",")]
     if len(values) != 4 or not all(abs(x) <= 1e6 for x in values):
-        raise argparse.ArgumentTypeError(f"{text!r}: must be X,Y,Z,HEADING, four numbers of at most 1e+06")
+        raise argparse.ArgumentTypeError(f"{text!r}: must be X,Y,Z,HEADING, four numbers of at most 1e+06 m and rad")
     return values
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import errno
 import json
 import os
 import signal
@@ -284,7 +285,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         leave_streams()
         return code_of(signal.SIGPIPE)
     except Ended as end:
-        return _said(f"ended by {end}", code_of(end.number))
+        name = signal.Signals(end.number).name
+        return _said(": ".join([f"ended by {name}", *map(str, end.args)]), code_of(end.number))
     except KeyboardInterrupt as end:
         return _said(": ".join(["interrupted", *map(str, end.args)]), INTERRUPTED)
     except (Error, OSError, RecursionError, MemoryError, ImportError) as error:
@@ -310,6 +312,9 @@ def _said(message: str, code: int) -> int:
     return code
 
 
+_OF_STREAMS = (errno.ENOSPC, errno.EIO, errno.EBADF, errno.EFBIG, errno.EDQUOT, errno.EINVAL)
+
+
 def _reason(error: Exception) -> str:
     if isinstance(error, RecursionError):
         return "the input is nested too deeply"
@@ -318,5 +323,6 @@ def _reason(error: Exception) -> str:
     if isinstance(error, ImportError):  # a library that is broken, or that there is no memory for
         return f"a part of the installation cannot be loaded: {error}"
     if isinstance(error, OSError) and not isinstance(error, Error) and error.strerror and error.filename is None:
-        return f"standard output: cannot be written: {error.strerror}"  # files have their names
+        what = "standard output: cannot be written" if error.errno in _OF_STREAMS else "the system gives no more"
+        return f"{what}: {error.strerror}"  # files have their names
     return str(error)

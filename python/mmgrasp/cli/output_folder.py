@@ -3,17 +3,25 @@
 from __future__ import annotations
 
 import contextlib
-import hashlib
 import json
 import os
 import shutil
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Set
 from fnmatch import fnmatchcase
 from pathlib import Path, PurePosixPath
 
 from .._core import Error, InvalidInput, IoError
-from .._files import check_folder, draft_folder, printable, read_text, remove_dead_drafts, temporary_room, write_file
+from .._files import (
+    check_folder,
+    draft_folder,
+    printable,
+    read_text,
+    remove_dead_drafts,
+    sha256_of,
+    some_of,
+    temporary_room,
+)
 from .signals import uninterrupted
 
 LIST = "files.json"
@@ -22,11 +30,13 @@ PLAN_FILES = (
     *("topview.png", "regions.png", "stop_*.png", "pick_*.png"),
 )
 _LARGEST_LIST = 100_000_000
+_OLD = "old"  # in a draft: the files that it takes the place of
 
 
 class OutputFolder:
-    """One folder, made ready before the work and filled after it. `own`: patterns of the names that the command writes, `folder`:
-    which of them are folders of files, `edited`: files that were changed since may be replaced, since a command that goes on with them looks itself; they get no checksums.
+    """One folder, made ready before the work and filled after it. `own`: patterns of the names that the command writes, the main file first, `folder`:
+    which of them are folders of files, `goes_on`: those that the command goes on with and looks at itself: they get no checksums, and are
+    replaced in one step, never out of the way.
 
     Everything is written beside its place and moved there at the end; what files.json lists of an earlier run goes. A folder that holds
     files under our names which it does not list is refused: they could be somebody's, and played for the new run's. So is one where a
@@ -35,11 +45,17 @@ class OutputFolder:
     """
 
     def __init__(
-        self, path: Path, own: tuple[str, ...] = PLAN_FILES, folder: str = "trajectories", *, edited: bool = False
+        self,
+        path: Path,
+        own: tuple[str, ...] = PLAN_FILES,
+        folder: str = "trajectories",
+        *,
+        goes_on: tuple[str, ...] = (),
     ) -> None:
         self.path = Path(os.path.realpath(path))
         self._own = own
         self._folder = folder
+        self._goes_on = goes_on
         check_folder(self.path)
         listed = self._listed()
         others = sorted(name for name in listed if not any(fnmatchcase(name.split("/")[0], one) for one in own))
@@ -48,21 +64,20 @@ class OutputFolder:
         foreign = sorted(self._own_files() - listed.keys())
         if foreign:
             raise IoError(
-                f"{path}: holds {_some(foreign)}, which {LIST} there does not list: remove them or choose another folder"
+                f"{path}: holds {some_of(foreign)}, which {LIST} there does not list: remove them or choose another folder"
             )
-        self._edited = edited
-        changed = sorted(name for name, known in listed.items() if known and _digest(self.path / name) not in known)
+        changed = sorted(name for name, known in listed.items() if known and sha256_of(self.path / name) not in known)
         if changed:
             raise IoError(
-                f"{path}: holds {_some(changed)}, changed since mmgrasp wrote it: move it away or choose another folder"
+                f"{path}: holds {some_of(changed)}, changed since mmgrasp wrote it: move it away or choose another folder"
             )
         self._known = self._marks()
 
-    def fill(self, write: Callable[[Path], object], *, added: bool = False) -> None:
+    def fill(self, write: Callable[[Path], object], *, added: bool = False, replacing: str = "") -> None:
         """Has `write` fill the folder (see `filled`). Where that fails, what was made is not lost: it is written into another folder, and the
         IoError that is raised names it."""
         try:
-            with self.filled(added=added) as draft:
+            with self.filled(added=added, replacing=replacing) as draft:
                 write(draft)
         except IoError as error:
             kept = self._kept_elsewhere(write)
@@ -78,8 +93,9 @@ class OutputFolder:
                 yield draft
         except BrokenPipeError:
             raise
-        except KeyboardInterrupt:
-            raise KeyboardInterrupt(self._without_pictures()) from None
+        except KeyboardInterrupt as ended:  # or Ended, with the signal's number
+            ended.args = (self._without_pictures(),)
+            raise
         except (Error, OSError, MemoryError, ImportError) as error:
             reason = "out of memory" if isinstance(error, MemoryError) else error
             raise IoError(f"{reason}: {self._without_pictures()}") from None
@@ -111,29 +127,41 @@ class OutputFolder:
 
     def _take_over(self, draft: Path, added: bool, replacing: str) -> None:
         files = {str(p.relative_to(draft).as_posix()): p for p in draft.rglob("*") if p.is_file() and p.name != LIST}
-        written = {name: set() if self._edited else {_digest(path)} for name, path in files.items()}
+        written = {name: set() if self._goes_on_with(name) else {sha256_of(path)} for name, path in files.items()}
         self._refuse_what_came()
         old = {name: known for name, known in self._listed().items() if name != LIST}
         new = {name: known for name, known in old.items() if added and not fnmatchcase(name, replacing)} | written
         both = {name: old.get(name, set()) | new.get(name, set()) for name in old | new}
-        self._write_list(both)  # whoever is killed between here and the end leaves only files that are listed
-        for name in sorted(written):
-            (self.path / name).parent.mkdir(exist_ok=True)
-            os.replace(draft / name, self.path / name)
-        for name in sorted(old.keys() - new.keys()):
+        self._write_list(both, draft)  # whoever is killed between here and the end leaves only files that are listed
+        self._exchange(draft, old.keys() - new.keys(), written.keys())
+        self._write_list(new, draft)
+        self._known = self._marks()
+
+    def _exchange(self, draft: Path, gone: Set[str], written: Set[str]) -> None:
+        """Puts the files of the draft in the place of what is there and of what is to go. Of the main files the old one goes first and the
+        new one comes last: whoever is killed in between leaves none beside files of another run."""
+        main_last = sorted(written, key=lambda name: (name == self._own[0], name))
+        with _all_or_none() as move:
+            for name in [*reversed(main_last), *sorted(gone)]:
+                if not self._goes_on_with(name) and (self.path / name).exists():
+                    move(self.path / name, draft / _OLD / name)
+            for name in main_last:
+                move(draft / name, self.path / name)
+        for name in gone:
             with contextlib.suppress(FileNotFoundError):
                 (self.path / name).unlink()
             with contextlib.suppress(OSError):
                 (self.path / name).parent.rmdir()
-        self._write_list(new)
-        self._known = self._marks()
+
+    def _goes_on_with(self, name: str) -> bool:
+        return any(fnmatchcase(name, pattern) for pattern in self._goes_on)
 
     def _refuse_what_came(self) -> None:
         """Raises IoError where, since the folder was last looked at, somebody wrote a file under a name of ours."""
         came = sorted(name for name, mark in self._marks().items() if self._known.get(name) != mark)
         if came:
             raise IoError(
-                f"{printable(str(self.path))}: {_some(came)}: written by somebody else in the meantime, and left alone"
+                f"{printable(str(self.path))}: {some_of(came)}: written by somebody else in the meantime, and left alone"
             )
 
     def _marks(self) -> dict[str, tuple[int, int, int]]:
@@ -161,9 +189,10 @@ class OutputFolder:
                 return place
         return None
 
-    def _write_list(self, files: dict[str, set[str]]) -> None:
+    def _write_list(self, files: dict[str, set[str]], draft: Path) -> None:
         listed = {name: sorted(known) for name, known in sorted((files | {LIST: set()}).items())}
-        write_file(self.path / LIST, json.dumps({"format": "mmgrasp-files", "files": listed}, indent=1) + "\n")
+        (draft / LIST).write_text(json.dumps({"format": "mmgrasp-files", "files": listed}, indent=1) + "\n")
+        os.replace(draft / LIST, self.path / LIST)
 
     def _own_files(self) -> set[str]:
         """What lies under names of ours: whatever is in folders of ours, and links, folders or devices in the place of a file."""
@@ -195,18 +224,20 @@ class OutputFolder:
         return {str(n): names[n] for n in good if (self.path / n).is_file() and not (self.path / n).is_symlink()}
 
 
-def _some(names: list[str]) -> str:
-    """The first of the names, and how many more there are."""
-    return ", ".join(names[:3]) + (f" and {len(names) - 3} more" if len(names) > 3 else "")
+@contextlib.contextmanager
+def _all_or_none() -> Iterator[Callable[[Path, Path], None]]:
+    """Hands out a function that moves a file to a name of its own; where one cannot be moved, all go back."""
+    moved: list[tuple[Path, Path]] = []
 
+    def move(source: Path, target: Path) -> None:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        os.replace(source, target)
+        moved.append((source, target))
 
-def _digest(path: Path) -> str:
-    """SHA-256 of a file's content."""
-    found = hashlib.sha256()
     try:
-        with open(path, "rb") as file:
-            while block := file.read(1 << 20):
-                found.update(block)
-    except OSError as error:
-        raise IoError(f"{printable(str(path))}: cannot be read: {error.strerror}") from None
-    return found.hexdigest()
+        yield move
+    except OSError:
+        for source, target in reversed(moved):
+            with contextlib.suppress(OSError):
+                os.replace(target, source)
+        raise

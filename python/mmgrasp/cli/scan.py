@@ -45,7 +45,7 @@ _MOST_LINES = 10
 
 def run_scan(arguments: argparse.Namespace, console: Console) -> int:
     """`mmgrasp scan`: depth frames to a map with its objects; the exit code."""
-    folder = OutputFolder(arguments.out, SCAN_FILES, edited=True)
+    folder = OutputFolder(arguments.out, SCAN_FILES, goes_on=(MAP, PARTIAL, PROGRESS_FILE))
     if folder.path == Path(os.path.realpath(arguments.frames)):
         raise InvalidInput(f"--out {arguments.out}: must be another folder than that of the frames")
     with Reporter(console) as report:
@@ -94,8 +94,7 @@ class _Checkpoints:
         if begun - self._last < self._pause:
             return
         name = PARTIAL.replace("*", f"{len(scan.frames):06d}")
-        with self._folder.filled(added=True, replacing=PARTIAL) as draft:
-            _save(scan, draft, name)
+        self._folder.fill(lambda draft: _save(scan, draft, name), added=True, replacing=PARTIAL)
         self._last = time.monotonic()
         self._pause = max(CHECKPOINT_SECONDS, 20 * (self._last - begun))  # large maps take long to save
 

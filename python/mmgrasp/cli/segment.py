@@ -14,6 +14,7 @@ from rich.table import Table
 from .. import _core
 from .._core import InvalidInput
 from .._files import printable, write_file
+from ..grippers.part_size import UNITS, wrong_size
 from ..scan.objects import pose_to_dict
 from ..viz.style import segment_colour
 from .console import Reporter
@@ -21,9 +22,7 @@ from .exit_codes import DONE
 from .output_folder import LIST, OutputFolder
 
 FORMAT, VERSION = "mmgrasp-segments", 2
-METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inch": 0.0254}
 FILES = ("segments.json", "segments.png", "diameters.png", LIST)
-_SMALLEST, _LARGEST = 0.001, 3.0  # of a part that a gripper takes: its diagonal [m]
 _UNKNOWN_SHARE = 0.2
 
 
@@ -32,7 +31,7 @@ def run_segment(arguments: argparse.Namespace, console: Console) -> int:
     folder = None if arguments.out is None else OutputFolder(arguments.out, FILES)
     with Reporter(console) as report:
         report("reading", 0.0)
-        mesh = _core.Mesh.load(str(arguments.mesh), scale=METRES[arguments.unit])
+        mesh = _core.Mesh.load(str(arguments.mesh), scale=UNITS[arguments.unit])
         points = mesh.vertices
         size = np.ptp(points, axis=0)
         _check_size(arguments, float(np.linalg.norm(size)))
@@ -58,13 +57,10 @@ def run_segment(arguments: argparse.Namespace, console: Console) -> int:
 
 
 def _check_size(arguments: argparse.Namespace, diagonal: float) -> None:
-    if _SMALLEST <= diagonal <= _LARGEST:
-        return
-    fits = [u for u, m in METRES.items() if _SMALLEST <= diagonal / METRES[arguments.unit] * m <= 0.5 * _LARGEST]
-    raise InvalidInput(
-        f"{printable(str(arguments.mesh))}: would be {diagonal:.4g} m across with --unit {arguments.unit}; a part for a gripper is from "
-        f"{_SMALLEST:g} m to {_LARGEST:g} m" + (f": the file may be in {' or '.join(fits)}" if fits else "")
-    )
+    rule = wrong_size(diagonal, arguments.unit)
+    if rule:
+        file = printable(str(arguments.mesh))
+        raise InvalidInput(f"{file}: would be {diagonal:.4g} m across with --unit {arguments.unit}; {rule}")
 
 
 def segments_to_dict(

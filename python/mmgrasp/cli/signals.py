@@ -16,7 +16,7 @@ class Ended(KeyboardInterrupt):
     """SIGTERM or SIGHUP: long calls end as by Ctrl-C."""
 
     def __init__(self, number: int) -> None:
-        super().__init__(signal.Signals(number).name)
+        super().__init__()
         self.number = number
         """The signal's."""
 
@@ -66,5 +66,5 @@ def uninterrupted() -> Iterator[None]:
     finally:
         for number, handler in before.items():
             signal.signal(number, signal.SIG_DFL if handler is None else handler)  # None: not Python's
-    for one in came:
-        signal.raise_signal(one)
+        for one in came:
+            signal.raise_signal(one)

@@ -113,10 +113,11 @@ def print_verdict(verdict: PlanVerdict, console: Console) -> None:
 
 def _least(verdict: PlanVerdict) -> str:
     """What the check proved about the number of stops by its own means."""
+    whole = "" if verdict.regions_searched else " for its regions as they stand (nothing was looked for that they lack)"
     if verdict.lower_bound == verdict.minimal_stops:
-        return f"{verdict.minimal_stops} stops are the least"
+        return f"{verdict.minimal_stops} stops are the least{whole}"
     cut = ", since the search for shared regions was cut" if verdict.search_cut else ""
-    return f"whether {verdict.minimal_stops} stops are the least was not decided (at least {verdict.lower_bound}){cut}"
+    return f"whether {verdict.minimal_stops} stops are the least was not decided (at least {verdict.lower_bound}){cut}{whole}"
 
 
 def _compared(verdict: PlanVerdict) -> str:

@@ -11,6 +11,7 @@ from .. import _core
 from .._argument_errors import checked
 from .._core import BaseGrid, BaseRegion, Error, Part, PartSupplyProblem, ReachDatabase, Tray
 from .._progress import Progress
+from .._reach_cache import cached_database
 from ..scenario import Scenario, load_scenario
 from .content import problem_digest
 from .engine import Engine
@@ -105,7 +106,7 @@ def _load(source: Any, database: Any) -> tuple[PartSupplyProblem, ReachDatabase]
     if isinstance(database, str):
         return problem, ReachDatabase.load(database, problem.arm)
     if database is not None:
-        return problem, ReachDatabase.load_or_build(problem.arm, _core.cache_folder(), **dict(database))
+        return problem, cached_database(problem.arm, **dict(database))
     if not isinstance(made, Scenario):
         raise _core.InvalidInput("database: must be given with a problem that is no scenario")
     return problem, made.reach_database()

@@ -9,6 +9,7 @@ import logging
 import math
 import reprlib
 import unicodedata
+from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, NoReturn
@@ -29,6 +30,7 @@ LONGEST_NAME = 200  # names become file names, and lines on a terminal
 DEEPEST = 50  # levels of a file
 LARGEST_SCENARIO = 4_000_000  # [bytes]
 LARGEST_PLAN = 1_000_000_000  # [bytes]
+MOST_VALUES = 50_000_000  # of a plan, so that reading it takes memory in proportion to its size
 
 RENAMED = {
     "carry": "place_region",
@@ -304,12 +306,13 @@ def read_yaml(path: Path) -> Document:
 def read_json(path: Path) -> Document:
     """Parses a JSON file; syntax errors name the line. Keys given twice, NaN and infinity are refused."""
     text, shown = read_text(path, LARGEST_PLAN), printable(str(path))
+    if (values := sum(map(text.count, ",[{"))) > MOST_VALUES:
+        raise InvalidInput(f"{shown}: holds about {values:,} values; a plan has at most {MOST_VALUES:,}")
 
     def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
         out = dict(pairs)
         if len(out) < len(pairs):
-            keys = [key for key, _ in pairs]
-            twice = next(key for key in out if keys.count(key) > 1)
+            twice = next(key for key, count in Counter(key for key, _ in pairs).items() if count > 1)
             raise InvalidInput(f"{shown}: the key {twice!r} is given twice")
         return out
 

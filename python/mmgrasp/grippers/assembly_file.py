@@ -17,15 +17,15 @@ from .._core import FingerGrip, GripperActuator, HoldingRequirement, InvalidInpu
 from .._files import ASSETS, shipped
 from ..documents.reading import Node, near_miss, read_yaml
 from ..scenario.robot_section import find_file
+from .part_size import UNITS, wrong_size
 from .turned_parts import block, turned
 
 Pose = NDArray[np.float64]
 
-UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001}
-LARGEST_PART, SMALLEST_PART = 2.0, 0.0005  # [m]
 MOST_TRIANGLES = 1_000_000  # of a part: segments and grasps take minutes beyond
 FINGER_DEFAULTS: dict[str, Any] = {name: value for name, (value, _) in _core._plan_grippers_option_table().items()}
 LOAD_DEFAULTS = HoldingRequirement(FingerGrip())
+SHORTEST_LINE = 5e-7  # that an insertion may end with [m]
 SEGMENT_KINDS = ("cylinder", "box", "cone", "sphere")
 SEGMENT_NAME = re.compile(rf"(?:{'|'.join(SEGMENT_KINDS)})_[1-9]\d{{0,5}}")
 SET_OPTIONS = ("change_cost", "time_limit", "max_nodes", "max_overlap")
@@ -199,11 +199,8 @@ def _read_part(node: Node, scale: float, unit: str) -> AssemblyPart:
         mesh = block(np.array(sizes) * scale)
     vertices = np.asarray(mesh.vertices)
     size = float(np.linalg.norm(vertices.max(axis=0) - vertices.min(axis=0)))
-    if not SMALLEST_PART <= size <= LARGEST_PART:
-        node[kinds[0]].fail(
-            f"is {size:.4g} m from corner to corner with unit: {unit}; parts from {SMALLEST_PART:g} to {LARGEST_PART:g} m "
-            "can be held: is another unit meant?"
-        )
+    if rule := wrong_size(size, unit):
+        node[kinds[0]].fail(f"is {size:.4g} m from corner to corner with unit: {unit}; {rule}")
     if len(mesh.triangles) > MOST_TRIANGLES:
         node[kinds[0]].fail(
             f"has {len(mesh.triangles):,} triangles: parts of up to {MOST_TRIANGLES:,} can be planned for; "
@@ -245,12 +242,17 @@ def _turned(node: Node, scale: float) -> Mesh:
     return mesh
 
 
+def _name(node: Node, known: dict[str, AssemblyPart]) -> str:
+    name = node.string()
+    if name not in known:
+        node.fail(f"is no part{near_miss(name, list(known))}")
+    return name
+
+
 def _names(node: Node, known: dict[str, AssemblyPart]) -> list[str]:
-    out = []
+    out: list[str] = []
     for element in _filled(node):
-        name = element.string()
-        if name not in known:
-            element.fail(f"is no part{near_miss(name, list(known))}")
+        name = _name(element, known)
         if name in out:
             element.fail("is there twice")
         out.append(name)
@@ -258,44 +260,68 @@ def _names(node: Node, known: dict[str, AssemblyPart]) -> list[str]:
 
 
 def _read_order(node: Node, parts: dict[str, AssemblyPart], scale: float) -> list[AssemblyStep]:
+    operations = _filled(node)
+    moved = _moved_parts(operations, parts)
+    place_of = {name: i for i, names in enumerate(moved) for name in names}
+    onto = [_read_onto(element, i, parts, place_of) for i, element in enumerate(operations)]
+    fixtures = _fixtures(parts, place_of, onto)
     steps: list[AssemblyStep] = []
-    placed: list[str] = []
-    for element in _filled(node):
+    for i, element in enumerate(operations):
+        stays = onto[i]
+        if stays is None:
+            stays = fixtures + [name for names in moved[:i] for name in names]
+        path = _read_path(element, scale)
+        name = element["name"].label() if "name" in element else " + ".join(moved[i])
+        if name in [step.name for step in steps]:
+            element.fail(f"an operation named {name} is there already: give it a name of its own")
+        steps.append(AssemblyStep(name, moved[i], stays, path, *_read_insertion(element, path, scale)))
+    return steps
+
+
+def _moved_parts(operations: list[Node], parts: dict[str, AssemblyPart]) -> list[list[str]]:
+    """For each operation the parts that it moves, each part once in the order."""
+    moved: list[list[str]] = []
+    for element in operations:
         element.mapping("", "part parts onto from path insertion name")
         if ("part" in element) == ("parts" in element):
             element.fail("must have one of part and parts")
-        if "part" in element:
-            name = element["part"].string()
-            if name not in parts:
-                element["part"].fail(f"is no part{near_miss(name, list(parts))}")
-            active = [name]
-        else:
-            active = _names(element["parts"], parts)
-        twice = [name for name in active if name in placed]
+        active = [_name(element["part"], parts)] if "part" in element else _names(element["parts"], parts)
+        twice = [name for name in active if any(name in earlier for earlier in moved)]
         if twice:
             element.fail(f"{twice[0]} was brought to its place before: an order names a part once")
-        if "onto" in element:
-            passive = _names(element["onto"], parts)
-            both = [name for name in passive if name in active]
-            if both:
-                element["onto"].fail(f"{both[0]} cannot be moved and stay")
-        else:
-            passive = list(placed)
-        if "from" in element and "path" in element:
-            element.fail("give from or path, not both")
-        if "from" in element:
-            path = [_pose(element["from"], scale), np.eye(4)]
-        elif "path" in element:
-            path = [_pose(pose, scale) for pose in _filled(element["path"])] + [np.eye(4)]
-        else:
-            path = [np.eye(4)]
-        name = element["name"].label() if "name" in element else " + ".join(active)
-        if name in [step.name for step in steps]:
-            element.fail(f"an operation named {name} is there already: give it a name of its own")
-        force, hole = _read_insertion(element, path, scale)
-        steps.append(AssemblyStep(name, active, passive, path, force, hole))
-        placed += active
-    return steps
+        moved.append(active)
+    return moved
+
+
+def _read_onto(
+    operation: Node, index: int, parts: dict[str, AssemblyPart], place_of: dict[str, int]
+) -> list[str] | None:
+    """Parts that stay during an operation, all of them there by then; None: the file does not say."""
+    if "onto" not in operation:
+        return None
+    names = _names(operation["onto"], parts)
+    for name, element in zip(names, operation["onto"].elements(), strict=True):
+        if place_of.get(name) == index:
+            element.fail("cannot be moved and stay")
+        if place_of.get(name, -1) > index:
+            element.fail(f"is brought to its place only later, by order[{place_of[name]}]")
+    return names
+
+
+def _fixtures(parts: dict[str, AssemblyPart], place_of: dict[str, int], onto: list[list[str] | None]) -> list[str]:
+    """Parts that no operation moves and some operation has things put onto: they are there all the time."""
+    named = {name for names in onto for name in names or []}
+    return [name for name in parts if name in named and name not in place_of]
+
+
+def _read_path(operation: Node, scale: float) -> list[Pose]:
+    if "from" in operation and "path" in operation:
+        operation.fail("give from or path, not both")
+    if "from" in operation:
+        return [_pose(operation["from"], scale), np.eye(4)]
+    if "path" in operation:
+        return [_pose(pose, scale) for pose in _filled(operation["path"])] + [np.eye(4)]
+    return [np.eye(4)]
 
 
 def _read_insertion(operation: Node, path: list[Pose], scale: float) -> tuple[float, NDArray[np.float64] | None]:
@@ -303,7 +329,7 @@ def _read_insertion(operation: Node, path: list[Pose], scale: float) -> tuple[fl
     if "insertion" not in operation:
         return 0.0, None
     node = operation["insertion"].mapping("force", "hole")
-    if len(path) < 2 or np.linalg.norm(path[-1][:3, 3] - path[-2][:3, 3]) < SMALLEST_PART * 1e-3:
+    if len(path) < 2 or np.linalg.norm(path[-1][:3, 3] - path[-2][:3, 3]) < SHORTEST_LINE:
         node.fail("needs a way that ends with a straight line: give from or path")
     hole = np.array(node["hole"].numbers(3)) * scale if "hole" in node else None
     return node["force"].number(least=0), hole

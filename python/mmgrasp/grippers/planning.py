@@ -26,7 +26,7 @@ from .._core import (
 from .._progress import Progress
 from .assembly_file import Assembly, AssemblyStep
 
-FINGERS_OF = {"box": 2, "cylinder": 3}  # P1 5.2.1
+FINGERS_OF = {"box": 2, "cylinder": 3}  # P1 5.2.1: as SegmentFate.fingers, which the library fills by the same rule
 
 
 @dataclass
@@ -59,13 +59,16 @@ class GripperPlan:
 
     @property
     def notes(self) -> list[str]:
-        """What is wrong with the parts' meshes, and what was mended."""
+        """What is wrong with the parts' meshes, what was mended, and parts that are in nobody's way."""
         out = []
+        met = {name for step in self.assembly.steps for name in step.active + step.passive}
         for name, part in self.assembly.parts.items():
             if not part.mesh.closed:
                 out.append(f"{name}: the mesh is open: it has no inside that others could be seen to stand in")
             if part.inside_out:
                 out.append(f"{name}: the mesh was inside out: its faces were turned")
+            if name not in met:
+                out.append(f"{name}: no operation moves it, and none has it in onto: it is in nobody's way")
         return out
 
     @property

@@ -29,11 +29,8 @@ def plan_to_check(root: Node) -> checks.PlanToCheck:
     planned.add_urdf(
         robot["urdf"].string(), origin=f"{printable(root.document.source)}: scenario.robot.urdf", mesh_files=files
     )
-    if "urdfs" in robot:
-        plan = checks.PlanToCheck(_read_source(robot, RobotSource(base, base_limits=limits, srdf=robot["srdf"].raw)))
-        plan.planned_robot = planned
-    else:  # a plan from before these were kept
-        plan = checks.PlanToCheck(planned)
+    plan = checks.PlanToCheck(_read_source(robot, RobotSource(base, base_limits=limits, srdf=robot["srdf"].raw)))
+    plan.planned_robot = planned
     _read_arm(plan, scenario)
     _read_scene(plan, scenario)
     _read_answer(plan, root)

@@ -40,6 +40,8 @@ class PlanVerdict:
     """Fewer stops are proven not to be enough; below `minimal_stops` the least number is not decided."""
     search_cut: bool = False
     """The search for regions that trays share ended at its limit, which `lower_bound` allows for."""
+    regions_searched: bool = False
+    """Cells were looked for that the regions lack; without it the numbers of stops hold for the regions as they stand."""
 
     @property
     def ok(self) -> bool:
@@ -55,6 +57,7 @@ class PlanVerdict:
             "minimal_stops": self.minimal_stops,
             "lower_bound": self.lower_bound,
             "search_cut": self.search_cut,
+            "regions_searched": self.regions_searched,
             "configurations_checked": self.configurations_checked,
             "allowed_collisions": [list(pair) for pair in self.allowed_collisions],
             "compared_with": self.compared_with,
@@ -88,8 +91,6 @@ def verify_plan(
     faults = check_consistency(root.raw) + check_scans(root)
     if scenario is not None:
         expected = scenario_to_dict(chosen_as(load_scenario(scenario, robot=robot, progress=progress), root.raw))
-        if "urdfs" not in root["scenario"]["robot"]:  # a plan from before these were kept
-            del expected["robot"]["urdfs"], expected["robot"]["links"]
         faults += [_changed(path, was, now) for path, was, now in differences(root["scenario"].raw, expected)]
     checked = checks.check_plan(to_check, progress=progress, **options)
     return PlanVerdict(
@@ -101,6 +102,7 @@ def verify_plan(
         "the scenario stored in it" if scenario is None else os.fspath(scenario),
         checked.lower_bound,
         checked.search_cut,
+        checked.regions_searched,
     )
 
 

@@ -148,7 +148,7 @@ def read_gripper(source: str) -> Hand:
     Raises InvalidInput or IoError with one message that names file, line, key, value and rule.
     """
     sections = _sections_of(source)
-    robot = compose(sections.robot)
+    robot = compose(sections.robot.mapping("urdf tool_link", f"group home {ROBOT_KEYS}"))
     _link(robot, sections.robot["tool_link"])
     return _read_gripper(sections.gripper, robot, sections.robot["tool_link"].string())
 

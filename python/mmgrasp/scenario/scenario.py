@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 import os
 import re
 from dataclasses import dataclass, field
@@ -13,10 +12,11 @@ import numpy as np
 
 from .. import _core
 from .._argument_errors import checked
-from .._core import CollisionChecker, InvalidInput, IoError, LinkShape, PartSupplyProblem, Plane, ReachDatabase, World
+from .._core import Box, CollisionChecker, InvalidInput, LinkShape, PartSupplyProblem, Plane, ReachDatabase, World
 from .._core import verify as checks
-from .._files import check_folder, shipped
+from .._files import shipped
 from .._progress import Progress
+from .._reach_cache import cached_database
 from ..documents.reading import RENAMED, Node, read_yaml
 from . import cell_bodies, drawn_bodies, floor_map
 from .contact_rules import ContactRules, read_contact_rules
@@ -33,9 +33,10 @@ TOP_OPTIONAL = (
     "arrival_covariance part_types gripper place_region floor obstacles allowed_collisions padding options reach"
 )
 FLOOR = "floor"
-REPLACING = "replacing a damaged reachability database"  # the stage that ReachDatabase.load_or_build reports
 MOST_TRAYS = 1000
 MOST_OBSTACLES = 10_000
+LARGEST_OBSTACLE = 1000.0  # a side of a box, and how far off [m]
+LONGEST_ARM = 10.0  # [m]
 LEAST_SAMPLES = 10_000  # of the database of what the arm reaches
 SHAPE_KEYS = "box cylinder sphere mesh shapes scale"
 FILE_KEYS = {
@@ -123,22 +124,7 @@ class Scenario:
     def reach_database(self, progress: Progress = None) -> ReachDatabase:
         """The arm's reachability database, from the cache or built now; without a usable cache it is built each time."""
         options = {"threads": self.options.get("threads", 0)} | self.reach
-        log = logging.getLogger("mmgrasp")
-
-        def hear(stage: str, fraction: float) -> None:
-            if stage == REPLACING:
-                log.warning("the reachability database in %s is damaged: it is built anew", _core.cache_folder())
-            if progress is not None:
-                progress(stage, fraction)
-
-        try:
-            check_folder(Path(_core.cache_folder()))
-            return ReachDatabase.load_or_build(self.setup.arm, _core.cache_folder(), progress=hear, **options)
-        except IoError as error:
-            log.warning(
-                "%s; planning goes on without the cache: set XDG_CACHE_HOME to a folder that can be written", error
-            )
-            return ReachDatabase.build(self.setup.arm, progress=progress, **options)
+        return cached_database(self.setup.arm, progress, **options)
 
     def __repr__(self) -> str:
         parts = sum(len(t.targets) for t in self.trays)
@@ -184,6 +170,7 @@ def _read_scenario(
     setup = read_setup(choose_sections(root, robot), progress)
     if setup.robot.base == "fixed":
         root["robot"].fail("a part-supply round needs base: diff_drive or omni")
+    _check_metres(root, obstacles, setup.robot.base_limits["workspace"])
     types = read_part_types(root["part_types"], setup.gripper) if "part_types" in root else {}
     scans = ScanReader(setup.gripper, _in_world(obstacles), find_file, progress)
     trays = _read_trays(root, types, setup, scans)
@@ -277,6 +264,20 @@ def _read_obstacles(root: Node) -> list[Obstacle]:
     return out
 
 
+def _check_metres(root: Node, obstacles: list[Obstacle], workspace: float) -> None:
+    """An obstacle of a kilometre, or a kilometre off, is one whose lengths were given in millimetres."""
+    most = max(LARGEST_OBSTACLE, workspace + LONGEST_ARM)
+    for node, obstacle in zip(root["obstacles"].elements() if "obstacles" in root else [], obstacles, strict=False):
+        farthest = float(np.abs(obstacle.pose[:3, 3]).max())
+        if farthest > most:
+            node["pose"].fail(f"stands {farthest:g} m off, farther than {most:g} m: lengths are in metres")
+        sides = [float(np.max(shape.shape.size)) for shape in obstacle.shapes if isinstance(shape.shape, Box)]
+        if max(sides, default=0.0) > LARGEST_OBSTACLE:
+            node.fail(
+                f"has a box of {max(sides):g} m, longer than {LARGEST_OBSTACLE:g} m: lengths are in metres; use floor for the ground"
+            )
+
+
 def _read_obstacle_shapes(node: Node) -> list[LinkShape]:
     """What a file or a drawing holds, or the shapes of a body."""
     given = [name for name in FILE_KEYS if name in node]
@@ -313,9 +314,6 @@ def _read_floor(root: Node, obstacles: list[Obstacle]) -> float | None:
 
 def _in_world(obstacles: list[Obstacle]) -> list[LinkShape]:
     return [moved(s, o.pose) for o in obstacles for s in o.shapes]
-
-
-LONGEST_ARM = 10.0  # [m]
 
 
 def _read_trays(root: Node, types: dict[str, PartType], setup: RobotSetup, scans: ScanReader) -> list[TraySetup]:

@@ -14,7 +14,6 @@ ARM = "asset:robots/tm14like/tm14like.urdf"
 FLANGE, OWN_GRIPPER = "wrist_3_link", "gripper_axis"
 PREFIX = "designed_"
 TOOL = PREFIX + "tips"
-FINGER_DEPTH = 0.01  # of a hand's description; nothing here reads it [m]
 
 
 @dataclass(frozen=True)
@@ -54,7 +53,7 @@ def gripper_arm(gripper: Gripper) -> GripperArm:
         closing=[1, 0, 0],
         max_opening=gripper.max_opening,
         min_opening=gripper.min_opening,
-        finger_depth=FINGER_DEPTH,
+        finger_depth=gripper.pad_length,
         finger_width=gripper.finger_width,
         joints=[HandJoint(f"{PREFIX}finger_{k + 1}_joint", 0.0, stroke) for k in range(gripper.fingers)],
         finger_links=[f"{PREFIX}finger_{k + 1}" for k in range(gripper.fingers)],

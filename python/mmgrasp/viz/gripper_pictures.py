@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+import tempfile
+import xml.etree.ElementTree as ET
 from collections.abc import Callable
 from pathlib import Path
 
@@ -17,15 +19,18 @@ from .style import OBSTACLE, PART, ROBOT_ARM
 from .two_sides import FROM_ABOVE_AND_ASIDE, Body, Points, two_sides
 
 SIDE = 520
+PALM = 0.012  # so much of it is drawn, along the approach [m]
+LONGEST = 60  # letters of a name in a file's
 
 
-def picture_name(kind: str, name: str) -> str:
-    """The file of a picture: letters and digits of a name only."""
-    return f"{kind}_{re.sub('[^A-Za-z0-9]+', '_', name)}.png"
+def picture_name(kind: str, index: int, name: str) -> str:
+    """The file of a picture: its number tells it from all others, ASCII letters and digits of the name say what it shows."""
+    readable = re.sub("[^A-Za-z0-9]+", "_", name)[:LONGEST].strip("_")
+    return f"{kind}_{index + 1}{'_' if readable else ''}{readable}.png"
 
 
 def write_gripper_pictures(plan: GripperPlan, out: Path, report: Callable[[str, float], None]) -> list[Path]:
-    """segments_<part>.png, and operation_<name>.png of each operation that a gripper does."""
+    """segments_<number>_<part>.png, and operation_<number>_<name>.png of each operation that a gripper does."""
     names = list(plan.segmentations)
     steps = plan.assembly.steps if plan.result is not None and plan.result.grippers else []
     paths = []
@@ -35,12 +40,12 @@ def write_gripper_pictures(plan: GripperPlan, out: Path, report: Callable[[str, 
         image = segment_picture(
             np.asarray(mesh.vertices), np.asarray(mesh.triangles), labels, plan.segment_names[name], SIDE
         )
-        paths.append(write_png(out / picture_name("segments", name), image))
+        paths.append(write_png(out / picture_name("segments", i, name), image))
     for i in range(len(steps)):
         report("pictures", (len(names) + i) / (len(names) + len(steps)))
         paths.append(
             write_png(
-                out / picture_name("operation", steps[i].name),
+                out / picture_name("operation", i, steps[i].name),
                 two_sides(operation_bodies(plan, i), FROM_ABOVE_AND_ASIDE, SIDE),
             )
         )
@@ -69,16 +74,25 @@ def gripper_bodies(gripper: Gripper, opening: float, T_tips: Points) -> list[Bod
         turn = _core.pose([0, 0, -gripper.finger_length], rpy=[0, 0, 2 * np.pi * i / gripper.fingers])
         T = T_tips @ turn @ _core.pose([opening / 2, 0, 0])
         bodies.append((_moved(T, np.asarray(finger.vertices)), np.asarray(finger.triangles), ROBOT_ARM))
-    sides, reach = 32, float(np.hypot(gripper.max_opening / 2 + gripper.finger_thickness, gripper.finger_width / 2))
+    sides, reach = 32, _palm_radius(gripper)
     angles = 2 * np.pi * np.arange(sides) / sides
     ring = np.stack([reach * np.cos(angles), reach * np.sin(angles), np.zeros(sides)], axis=1)
-    low, high = ring - [0, 0, gripper.finger_length + 0.012], ring - [0, 0, gripper.finger_length]
+    low, high = ring - [0, 0, gripper.finger_length + PALM], ring - [0, 0, gripper.finger_length]
     k = np.arange(sides)
     n = (k + 1) % sides
     walls = np.concatenate([np.stack([k, n, n + sides], axis=1), np.stack([k, n + sides, k + sides], axis=1)])
     caps = np.concatenate([np.stack([0 * k, n, k], axis=1), np.stack([0 * k, k, n], axis=1) + sides])
     bodies.append((_moved(T_tips, np.concatenate([low, high])), np.concatenate([walls, caps]), ROBOT_ARM))
     return bodies
+
+
+def _palm_radius(gripper: Gripper) -> float:
+    """As the gripper's own files have it [m]."""
+    with tempfile.TemporaryDirectory() as folder:
+        gripper.to_urdf(folder)
+        palm = ET.parse(Path(folder, "gripper.urdf")).find("link[@name='base']/collision/geometry/cylinder")
+    assert palm is not None
+    return float(palm.get("radius", ""))
 
 
 def _moved(T: Points, points: Points) -> Points:

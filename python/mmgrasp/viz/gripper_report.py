@@ -81,7 +81,7 @@ def _obstacles(plan: GripperPlan) -> str:
 def _notes(plan: GripperPlan) -> str:
     if not plan.notes:
         return ""
-    return "<h2>Meshes to look at</h2><ul>" + "".join(f"<li>{escape(note)}</li>" for note in plan.notes) + "</ul>"
+    return "<h2>To look at</h2><ul>" + "".join(f"<li>{escape(note)}</li>" for note in plan.notes) + "</ul>"
 
 
 def _grippers(plan: GripperPlan) -> str:
@@ -122,7 +122,9 @@ def _operations(plan: GripperPlan, pictures: Path | None) -> str:
     if plan.assembly.holding is not None:
         head += ["Load may grow by", "Moment of the insertion [N m]", "Torque a pad holds [N m]", "A pad touches [mm²]"]
     out += table(head, rows, {3, 5, 6, 7, 8})
-    return out + "".join(_figure(pictures, picture_name("operation", s.name), s.name) for s in plan.assembly.steps)
+    return out + "".join(
+        _figure(pictures, picture_name("operation", i, s.name), s.name) for i, s in enumerate(plan.assembly.steps)
+    )
 
 
 def _held(held: HeldLoad | None) -> list[str]:
@@ -147,7 +149,9 @@ def _segments(plan: GripperPlan, pictures: Path | None) -> str:
     ]
     head = ["Operation", "Part", "Segment", "Primitive", "Fingers", "Free grasps", "Verdict"]
     out = "<h2>The segments</h2>" + table(head, rows, {4})
-    return out + "".join(_figure(pictures, picture_name("segments", n), f"Segments of {n}") for n in plan.segmentations)
+    return out + "".join(
+        _figure(pictures, picture_name("segments", i, n), f"Segments of {n}") for i, n in enumerate(plan.segmentations)
+    )
 
 
 def _figure(pictures: Path | None, file: str, caption: str) -> str:

@@ -10,7 +10,8 @@ function bytesOf(text) {
 
 // A part of the page's data with its arrays read: vertices (3 n), triangles (3 m), labels (m), middle and radius of its ball.
 function readPart(data) {
-  const part = {name: data.name, colours: data.colours, kept: new Set(data.keep_off), names: data.names, texts: data.segments};
+  const part = {name: data.name, colours: data.colours, kept: new Set(data.keep_off), names: data.names, texts: data.segments, boxes: data.boxes};
+  part.given = part.kept.size + part.boxes.length > 0;
   part.vertices = new Float32Array(bytesOf(data.vertices));
   part.triangles = new Uint32Array(bytesOf(data.triangles));
   part.labels = new Uint32Array(bytesOf(data.labels));
@@ -73,13 +74,14 @@ function toggle(part, segment) {
   if (!part.kept.delete(segment)) part.kept.add(segment);
 }
 
-// What to put under each part in assembly.yaml.
+// What to put under each part in assembly.yaml, instead of what it has there: boxes stay; [] where all was taken away.
 function yamlLines(parts) {
   const lines = [];
   for (const part of parts) {
-    if (!part.kept.size) continue;
+    if (!part.kept.size && !part.given) continue;
+    const names = [...part.kept].sort((a, b) => a - b).map(s => part.names[s]);
     lines.push(`  - name: ${JSON.stringify(part.name)}`);
-    lines.push(`    keep_off: [${[...part.kept].sort((a, b) => a - b).map(s => part.names[s]).join(', ')}]`);
+    lines.push(`    keep_off: [${[...names, ...part.boxes].join(', ')}]`);
   }
   return lines.join('\n');
 }

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import base64
 import json
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from .._core import KeepOff
+from ..grippers.part_size import UNITS
 from ..grippers.planning import GripperPlan
+from ..scan.objects import pose_to_dict
 from .style import segment_colour
 
 SCRIPT = Path(__file__).with_suffix(".js")
@@ -37,7 +41,10 @@ def picker_html(plan: GripperPlan) -> str:
 
 
 def picker_data(plan: GripperPlan) -> list[dict[str, Any]]:
-    """Each moved part: arrays as base64 of little-endian float32 (3 n, in its own frame [m]) and uint32; per segment a colour, a name and a text."""
+    """Each moved part: arrays as base64 of little-endian float32 (3 n, in its own frame [m]) and uint32; per segment a colour, a name and a text.
+
+    Boxes that no finger may reach into are lines as the assembly's file has them.
+    """
     out = []
     for name, segmentation in plan.segmentations.items():
         part = plan.assembly.parts[name]
@@ -53,11 +60,28 @@ def picker_data(plan: GripperPlan) -> list[dict[str, Any]]:
                 "names": names,
                 "keep_off": [
                     *(number for k in part.keep_off for number in k.segments),
-                    *(names.index(chosen) for k in part.keep_off for chosen in k.names),
+                    *(names.index(chosen.removeprefix(f"{name}/")) for k in part.keep_off for chosen in k.names),
                 ],
+                "boxes": [line for k in part.keep_off for line in _box_lines(k, UNITS[plan.assembly.unit])],
             }
         )
     return out
+
+
+def _box_lines(keep_off: KeepOff, unit: float) -> list[str]:
+    """The boxes in the words and the unit of an assembly's file."""
+    lines = []
+    for T, size in keep_off.boxes:
+        scaled = np.array(T)
+        scaled[:3, 3] /= unit
+        pose = ", ".join(f"{key}: {_list_text(values)}" for key, values in pose_to_dict(scaled).items())
+        lines.append(f"{{box: {_list_text(size / unit)}, pose: {{{pose}}}}}")
+    return lines
+
+
+def _list_text(values: Iterable[float]) -> str:
+    """Numbers without exponents, which YAML takes for words."""
+    return f"[{', '.join(np.format_float_positional(float(f'{x:.12g}'), trim='-') for x in values)}]"
 
 
 def _packed(values: np.ndarray, kind: str) -> str:

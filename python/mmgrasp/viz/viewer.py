@@ -150,6 +150,8 @@ def view(plan: dict[str, Any], port: int = 8080, open_browser: bool = True, bloc
     if block:
         try:
             viewer.run()
-        except KeyboardInterrupt:
+        except KeyboardInterrupt as ended:
             viewer.server.stop()
+            if type(ended) is not KeyboardInterrupt:  # by a signal that is no Ctrl-C
+                raise
     return viewer

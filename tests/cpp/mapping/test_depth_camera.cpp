@@ -49,6 +49,9 @@ TEST(DepthNoise, RefusesWhatIsNotPositive) {
   EXPECT_THROW((DepthNoise{0.001, -0.001}.check(0.1, 5)), InvalidInput);          // negative beyond 1 m
   EXPECT_THROW((DepthNoise{0.001, -0.003, 0.0015}.check(0.1, 5)), InvalidInput);  // in between only
   EXPECT_THROW((DepthNoise{0.001, 0, 0, -1}.check(0.1, 5)), InvalidInput);
+  EXPECT_THROW((DepthNoise{9e-8}.check(0.1, 5)), InvalidInput);  // its weight would be more than a float holds
+  EXPECT_NO_THROW((DepthNoise{1e-7}.check(0.1, 5)));
+  EXPECT_THROW(constant_noise(1e-20), InvalidInput);
 }
 
 TEST(DepthCamera, BadFieldsAreNamed) {

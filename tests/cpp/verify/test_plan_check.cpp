@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <limits>
+#include <thread>
 
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/geometry/mesh.hpp"
@@ -408,6 +410,21 @@ TEST(PlanCheck, StoppedCheckIsNoPass) {
   mmgrasp::Monitor monitor;
   monitor.stop.stop();
   EXPECT_TRUE(codes(check_plan(good_plan(), quick(), monitor)).count("stopped"));
+}
+
+TEST(PlanCheckVerdict, EndsSoonAfterItWasStoppedAtAnyMoment) {
+  PlanCheckOptions options = quick();
+  options.samples = 1'000'000;
+  options.region_samples = 100'000;
+  for (const int delay : {1, 5, 20, 100, 300}) {
+    mmgrasp::Monitor monitor;
+    std::thread watch([stop = monitor.stop, delay]() mutable {
+      std::this_thread::sleep_for(std::chrono::milliseconds(delay));
+      stop.stop();
+    });
+    EXPECT_TRUE(codes(check_plan(good_plan(), options, monitor)).count("stopped")) << delay;  // the whole takes hours
+    watch.join();
+  }
 }
 
 TEST(PlanCheckOptions, RefusesNonsense) {

@@ -382,8 +382,10 @@ TEST(PlanCheckStops, BasePosesAreDrawnInRegionsAndBesideThem) {
   EXPECT_EQ(codes(check_plan(plan, options)), Codes{});  // nothing is known about how trays were searched
   plan.searched["A"] = {{0.0}, {0.9, 0}, 10};
   EXPECT_EQ(codes(check_plan(plan, options)), Codes{"region-incomplete"});  // the arm reaches farther than its square
+  EXPECT_TRUE(check_plan(plan, options).regions_searched);
   plan.padded = true;  // grown bodies reach less far, and these are judged as they are
   EXPECT_EQ(codes(check_plan(plan, options)), Codes{});
+  EXPECT_FALSE(check_plan(plan, options).regions_searched);
   plan.padded = false;
   plan.searched["A"] = {{0.0}, {0.4, 0}, 0.2};  // what lies beside the square was not to be tried
   EXPECT_EQ(codes(check_plan(plan, options)), Codes{});

@@ -30,6 +30,7 @@ struct MMGRASP_EXPORT BasePath {
   std::vector<Eigen::Vector3d> poses;  ///< x, y, theta; theta is continuous (not wrapped) along the path.
   double length = 0;                   ///< Driven distance [m].
   double turning = 0;                  ///< Sum of absolute heading changes [rad].
+  double cell = 0;  ///< Cell edge of the search that found it, or that was the last [m]; 0: none was needed.
 };
 
 /// Plans a drive of the whole robot with its arm at `home`, collision-checked in 3-D: A* over a grid of base poses,

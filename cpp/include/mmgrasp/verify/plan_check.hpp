@@ -82,6 +82,9 @@ struct MMGRASP_EXPORT PlanCheckResult {
   int minimal_stops = 0;    ///< So many stops are enough for the plan's regions: found again.
   int lower_bound = 0;      ///< Fewer are not: proven again. Below `minimal_stops`: the least number is not decided.
   bool search_cut = false;  ///< The search for shared regions ended at its limit, which `lower_bound` allows for.
+  /// Whether cells were looked for that the regions lack: not with region_samples = 0, and not where bodies are padded.
+  /// Without it the numbers of stops hold for the regions as they stand in the plan.
+  bool regions_searched = false;
   std::size_t configurations_checked = 0;
 };
 

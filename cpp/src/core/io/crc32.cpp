@@ -3,6 +3,8 @@
 #include <array>
 #include <cstring>
 
+#include "mmgrasp/core/detail/interruption.hpp"
+
 namespace mmgrasp::detail {
 namespace {
 
@@ -33,10 +35,7 @@ std::uint32_t little_endian(const unsigned char* bytes) {
          std::uint32_t{bytes[3]} << 24;
 }
 
-}  // namespace
-
-std::uint32_t crc32(const void* bytes, std::size_t size, std::uint32_t before) {
-  const auto* at = static_cast<const unsigned char*>(bytes);
+std::uint32_t of_piece(const unsigned char* at, std::size_t size, std::uint32_t before) {
   std::uint32_t value = ~before;
   for (; size >= kSlices; size -= kSlices, at += kSlices) {
     const std::uint32_t low = little_endian(at) ^ value, high = little_endian(at + 4);
@@ -46,6 +45,18 @@ std::uint32_t crc32(const void* bytes, std::size_t size, std::uint32_t before) {
   }
   for (; size > 0; --size, ++at) value = (value >> 8) ^ kTables[0][(value ^ *at) & 0xff];
   return ~value;
+}
+
+}  // namespace
+
+std::uint32_t crc32(const void* bytes, std::size_t size, std::uint32_t before) {
+  constexpr std::size_t kPiece = 8 << 20;  // [bytes] between two looks for an interruption
+  const auto* at = static_cast<const unsigned char*>(bytes);
+  for (; size > kPiece; size -= kPiece, at += kPiece) {
+    throw_if_interrupted();
+    before = of_piece(at, kPiece, before);
+  }
+  return of_piece(at, size, before);
 }
 
 }  // namespace mmgrasp::detail

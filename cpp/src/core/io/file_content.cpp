@@ -3,18 +3,21 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <system_error>
 
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/error.hpp"
 
 namespace mmgrasp::detail {
 namespace {
 
 constexpr int kMostLinks = 40;  // as Linux
+constexpr std::size_t kPiece = 8 << 20;  // of files, read and written between two looks for an interruption [bytes]
 
 /// Where a file is really written: links are followed, also to where nothing is yet.
 std::filesystem::path link_target(const std::string& path, const std::string& kind) {
@@ -61,10 +64,16 @@ std::string file_content(const std::string& path, const std::string& kind, std::
   if (end < 0) fail("cannot be read");
   const auto size = static_cast<std::uintmax_t>(end);
   if (size > most) fail("is larger than " + std::to_string(most) + " bytes");
-  std::string text(size, '\0');
+  std::string text;
+  text.reserve(size);
   file.seekg(0);
-  file.read(text.data(), static_cast<std::streamsize>(size));
-  text.resize(file.gcount());  // it may have been cut short meanwhile
+  while (text.size() < size && file) {  // it may have been cut short meanwhile
+    throw_if_interrupted();
+    const std::size_t done = text.size(), piece = std::min<std::size_t>(kPiece, size - done);
+    text.resize(done + piece);
+    file.read(text.data() + done, static_cast<std::streamsize>(piece));
+    text.resize(done + file.gcount());
+  }
   if (text.empty()) fail("is empty");
   return text;
 }
@@ -78,7 +87,17 @@ void write_file(const std::string& path, const std::string& kind, std::initializ
     throw IoError(kind + " '" + path + "': cannot be written" + reason);
   };
   std::ofstream file(temporary, std::ios::binary | std::ios::trunc);
-  for (const std::string_view part : parts) file.write(part.data(), static_cast<std::streamsize>(part.size()));
+  try {
+    for (const std::string_view part : parts)
+      for (std::size_t at = 0; at < part.size(); at += kPiece) {
+        throw_if_interrupted();
+        file.write(part.data() + at, static_cast<std::streamsize>(std::min(kPiece, part.size() - at)));
+      }
+  } catch (const Interrupted&) {
+    std::error_code ignored;
+    std::filesystem::remove(temporary, ignored);
+    throw;
+  }
   file.close();
   if (!file) fail(" whole (is the disk full?)");
   std::error_code error;

@@ -10,6 +10,7 @@
 #include <cstring>
 
 #include "mmgrasp/core/detail/crc32.hpp"
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/error.hpp"
 
 namespace mmgrasp::detail {
@@ -76,10 +77,17 @@ void NpyWriter::sum(const unsigned char* bytes, std::size_t size) {
 }
 
 void NpyWriter::write(const void* bytes, std::size_t size) {
-  if (size == 0) return;
-  sum(static_cast<const unsigned char*>(bytes), size);
-  if (std::fwrite(bytes, 1, size, file_) != size) refuse();
-  file_bytes_ += size;
+  constexpr std::size_t kPiece = 8 << 20;  // [bytes] between two looks for an interruption
+  const auto* at = static_cast<const unsigned char*>(bytes);
+  for (std::size_t left = size; left > 0;) {
+    throw_if_interrupted();
+    const std::size_t piece = std::min(kPiece, left);
+    sum(at, piece);
+    if (std::fwrite(at, 1, piece, file_) != piece) refuse();
+    file_bytes_ += piece;
+    at += piece;
+    left -= piece;
+  }
 }
 
 void NpyWriter::finish(std::uint64_t rows) {

@@ -8,6 +8,8 @@
 
 namespace mmgrasp {
 
+constexpr double kLeastSigma = 1e-7;  // [m]; maps hold weights, one over its square, as floats
+
 double DepthNoise::sigma(double depth, double incidence) const {
   double out = constant + depth * (linear + depth * quadratic);
   if (slant > 0) {
@@ -34,11 +36,13 @@ void DepthNoise::check(double nearest, double farthest) const {
   double least = std::min(sigma(nearest), sigma(farthest));
   const double vertex = quadratic != 0 ? -linear / (2 * quadratic) : nearest;
   if (vertex > nearest && vertex < farthest) least = std::min(least, sigma(vertex));
-  require(least > 0, "noise", least, "must be a positive standard deviation [m] over the camera's range");
+  require(least >= kLeastSigma, "noise", least,
+          "must be a standard deviation of at least 1e-7 m over the camera's range");
 }
 
 DepthNoise constant_noise(double sigma) {
   require_positive(sigma, "sigma", "m");
+  require(sigma >= kLeastSigma, "sigma", sigma, "must be at least 1e-7 m");
   return {sigma};
 }
 

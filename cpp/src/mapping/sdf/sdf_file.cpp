@@ -10,6 +10,7 @@
 
 #include "mmgrasp/core/detail/crc32.hpp"
 #include "mmgrasp/core/detail/file_content.hpp"
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/error.hpp"
 
 namespace mmgrasp::detail {
@@ -141,6 +142,7 @@ std::string content_of(const SdfGrid& grid) {
   out.add(static_cast<std::uint64_t>(grid.layers.size()));
   out.add(static_cast<std::uint64_t>(order.size()));
   for (const int block : order) {
+    throw_if_interrupted();
     out.add(grid.keys[block].packed());
     for (const auto& layer : grid.layers) {
       const VoxelBlock* voxels = layer[block].get();
@@ -172,6 +174,7 @@ void take_blocks(Reader& in, SdfGrid& grid) {
   }
   const std::size_t blocks = in.count(1);
   for (std::size_t k = 0; k < blocks; ++k) {
+    throw_if_interrupted();
     const BlockKey key = BlockKey::unpack(in.take<std::uint64_t>());
     if (grid.find(key) >= 0) in.refuse("damaged: a block twice");
     const int block = grid.add(key);

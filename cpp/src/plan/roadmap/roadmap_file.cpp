@@ -2,8 +2,10 @@
 // weights (none: all 1),
 // checksum.
 #include <cstring>
+#include <functional>
 
 #include "mmgrasp/core/detail/file_content.hpp"
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/hash.hpp"
 #include "plan/roadmap/roadmap_data.hpp"
@@ -71,7 +73,7 @@ Roadmap Roadmap::load(const std::string& path, const JointGroup& group) {
   const std::size_t body = content.size() - sizeof(std::uint64_t);
   std::uint64_t checksum = 0;
   std::memcpy(&checksum, content.data() + body, sizeof checksum);
-  if (Hasher().add(content.substr(0, body)).value() != checksum)
+  if (Hasher().add(static_cast<std::int64_t>(body)).add(content.data(), body).value() != checksum)
     throw IoError(path + ": is damaged or cut off: its checksum does not match");
   Header header{};
   std::memcpy(&header, content.data() + kStart, sizeof header);
@@ -106,9 +108,11 @@ Roadmap Roadmap::load(const std::string& path, const JointGroup& group) {
     if (pair[0] < 0 || pair[0] >= pair[1] || pair[1] >= header.vertices) throw IoError(path + ": is damaged: bad edge");
     data->ends.emplace_back(pair[0], pair[1]);
   }
-  detail::CancelCheck never;
-  if (data->vertices.cols() > 0) data->index(never);
-  data->make_arcs(never);
+  const CancelToken* const token = detail::interruption_token();
+  const std::function<bool()> over = [token] { return token && token->stopped(); };
+  detail::CancelCheck interrupted({}, over);
+  const bool whole = (data->vertices.cols() == 0 || data->index(interrupted)) && data->make_arcs(interrupted);
+  if (!whole) throw detail::Interrupted();
   return Roadmap(data);
 }
 

@@ -56,7 +56,12 @@ ReachDatabase ReachDatabase::load_or_build(const JointGroup& arm, const ReachOpt
   constexpr std::int64_t kWorthParts = 16'000'000;
   if (options.samples >= kWorthParts) return build_to(path, arm, options, building);
   ReachDatabase built = build(arm, options, building);
-  if (!monitor.stopped()) built.save(path);
+  if (monitor.stopped()) return built;
+  try {
+    built.save(path);
+  } catch (const IoError& error) {  // a full disk, say: what was built is not lost
+    monitor.report(std::string("the reachability database is not kept: ") + error.what(), 1.0);
+  }
   return built;
 }
 

@@ -133,10 +133,14 @@ BasePath plan_base_route(CollisionChecker& checker, const Eigen::VectorXd& home,
   Poses3 poses = {from};
   if (!same) {
     auto found = detail::search_base_path(clearance, from, to, settings, monitor);
+    path.cell = settings.resolution;
     const bool whole = settings.bounds.isApprox(floor);
-    if (found.outcome == Outcome::not_found &&
-        !whole)  // a way that leads far around, in cells as large as they must be
-      found = detail::search_base_path(clearance, from, to, settings_on(floor), monitor);
+    if (found.outcome == Outcome::not_found && !whole) {
+      // A way that leads far around, in cells as large as they must be.
+      const BaseSearchSettings far = settings_on(floor);
+      found = detail::search_base_path(clearance, from, to, far, monitor);
+      path.cell = far.resolution;
+    }
     if (found.outcome != Outcome::solved) {
       path.outcome = found.outcome;
       return path;

@@ -32,6 +32,7 @@ BasePath search_coarser(const Search& search, double first) {
   }
   BasePath none;
   none.outcome = Outcome::timeout;
+  none.cell = first;
   return none;
 }
 

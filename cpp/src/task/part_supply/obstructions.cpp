@@ -40,24 +40,24 @@ Obstruction explain_robustness(const RobustnessResult& check, const std::vector<
 }
 
 Obstruction explain_route(const Eigen::Vector3d& from, bool from_stop, const Eigen::Vector3d& to,
-                          const std::string& tray, double resolution) {
+                          const std::string& tray, const BasePath& searched) {
   Obstruction obstruction;
   obstruction.stage = "route";
   obstruction.tray = tray;
-  obstruction.message = "no drive from " + ends_of_drive(from, from_stop, " leads to ", to, tray) +
-                        " with the arm at home, not in cells of " + six_digits(0.5 * resolution) +
-                        " m either: widen the way or choose a narrower home";
-  return obstruction;
-}
-
-Obstruction explain_long_search(const Eigen::Vector3d& from, bool from_stop, const Eigen::Vector3d& to,
-                                const std::string& tray, double resolution) {
-  Obstruction obstruction;
-  obstruction.stage = "route";
-  obstruction.tray = tray;
-  obstruction.message = "the search for a drive from " + ends_of_drive(from, from_stop, " to ", to, tray) +
-                        " gave up before it had tried every way: use a coarser route_resolution (" +
-                        six_digits(resolution) + " m now) or widen the way";
+  const std::string cells = searched.cell > 0 ? " in cells of " + six_digits(searched.cell) + " m" : "";
+  if (searched.outcome == Outcome::timeout) {
+    obstruction.message = "the search for a drive from " + ends_of_drive(from, from_stop, " to ", to, tray) +
+                          " gave up" + cells +
+                          " before it had tried every way, and larger cells lead nowhere: widen the way or keep the "
+                          "base to a smaller base_limits.workspace";
+  } else if (searched.outcome == Outcome::infeasible) {
+    obstruction.message =
+        "no drive from " + ends_of_drive(from, from_stop, " leads to ", to, tray) + ": the base is fixed";
+  } else {
+    obstruction.message = "no drive from " + ends_of_drive(from, from_stop, " leads to ", to, tray) +
+                          " with the arm at home" + (cells.empty() ? "" : ", not" + cells + " either") +
+                          ": widen the way or choose a narrower home";
+  }
   return obstruction;
 }
 

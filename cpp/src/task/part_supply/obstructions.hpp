@@ -18,14 +18,10 @@ Obstruction explain_region(const PartSupplyProblem& problem, const ReachDatabase
 /// Explains that too few of the base poses drawn at one of these stops serve all its parts.
 Obstruction explain_robustness(const RobustnessResult& check, const std::vector<Stop>& stops);
 
-/// Explains that no drive leads from the start, or a stop, to a base pose; `tray` is the one to be served there, empty
-/// for the goal, `resolution` what the route was asked for with [m]; cells of half of it were tried as well.
+/// Explains that no drive leads from the start, or a stop, to a base pose, or that the search for it gave up; `tray` is
+/// the one to be served there, empty for the goal, `searched` what came of the search.
 Obstruction explain_route(const Eigen::Vector3d& from, bool from_stop, const Eigen::Vector3d& to,
-                          const std::string& tray, double resolution);
-
-/// Explains that the search for such a drive gave up.
-Obstruction explain_long_search(const Eigen::Vector3d& from, bool from_stop, const Eigen::Vector3d& to,
-                                const std::string& tray, double resolution);
+                          const std::string& tray, const BasePath& searched);
 
 /// Explains that no arm motion was found for this pick from a base pose; `remedies` as of pick_remedies().
 Obstruction explain_motion(const PartSupplyProblem& problem, const Eigen::Vector3d& base_pose, const Pick& failed,

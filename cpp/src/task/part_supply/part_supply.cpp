@@ -262,10 +262,9 @@ class PartSupply {
     const Eigen::Vector3d from = last_stop < 0 ? problem_.start : plan_.stops[last_stop].pose;
     const Eigen::Vector3d to = stop < 0 ? problem_.goal : plan_.stops[stop].pose;
     const std::string tray = stop < 0 ? "" : first_tray(stop);
-    if (routes.between(from, to).outcome != Outcome::timeout)
-      return obstructed(explain_route(from, last_stop >= 0, to, tray, problem_.options.route_resolution));
-    plan_.outcome = Outcome::timeout;
-    return obstructed(explain_long_search(from, last_stop >= 0, to, tray, problem_.options.route_resolution));
+    const BasePath searched = routes.between(from, to);
+    if (searched.outcome == Outcome::timeout) plan_.outcome = Outcome::timeout;
+    return obstructed(explain_route(from, last_stop >= 0, to, tray, searched));
   }
 
   std::vector<PartRef> remaining(const std::set<PartRef>& picked) const {
@@ -352,12 +351,9 @@ class PartSupply {
       const Eigen::Vector3d& pose = plan_.stops[stop].pose;
       Unloading unloading{i, routes.between(pose, problem_.goal), {}};
       const bool returns = plan_.picks[i + 1].stop == stop;
-      if (returns) unloading.back = routes.between(problem_.goal, pose);
+      if (returns) unloading.back = routes.between(problem_.goal, pose);  // the same drive the other way
       if (monitor_.stopped()) return false;
       if (unloading.to_goal.outcome != Outcome::solved) return obstructed_route(routes, stop, -1);
-      if (returns && unloading.back.outcome != Outcome::solved)
-        return obstructed(
-            explain_route(problem_.goal, false, pose, first_tray(stop), problem_.options.route_resolution));
       plan_.unloadings.push_back(std::move(unloading));
     }
     return true;

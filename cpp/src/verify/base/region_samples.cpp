@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <map>
 
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/parallel.hpp"
 #include "verify/base/grasp_search.hpp"
@@ -35,22 +37,48 @@ bool lists(const CheckedTray& tray, double heading) {
                      [&](double known) { return std::abs(wrap_angle(known - heading)) <= 1e-6; });
 }
 
-/// Cells of one region, and those outside of it that were searched for its tray: beside it, or farther off.
+/// Some of the cells that are shown to it, each as likely as any other.
+class DrawnCells {
+ public:
+  explicit DrawnCells(int count) : count_(count) {}
+  void show(const Cell& cell, Rng& rng) {
+    const std::size_t place = shown_ < count_ ? shown_ : rng.index(shown_ + 1);
+    ++shown_;
+    if (place == cells_.size())
+      cells_.push_back(cell);
+    else if (place < count_)
+      cells_[place] = cell;
+  }
+  const std::vector<Cell>& cells() const { return cells_; }
+
+ private:
+  std::size_t count_, shown_ = 0;
+  std::vector<Cell> cells_;
+};
+
+/// Cells of one region, and those outside of it that were searched for its tray: beside it, and some farther off.
 class RegionCells {
  public:
-  RegionCells(const PlanToCheck& plan, const CheckedRegion& region) : plan_(plan), grid_(plan.grid), region_(region) {
-    const auto searched = plan.searched.find(region.tray);
-    for (int layer = 0; layer < static_cast<int>(grid_.headings.size()); ++layer) {
-      for (int iy = 0; iy < grid_.ny; ++iy) {
-        for (int ix = 0; ix < grid_.nx; ++ix) {
-          const Cell cell{layer, ix, iy};
-          if (has(layer, ix, iy))
-            inside.push_back(cell);
-          else if (searched != plan.searched.end() && was_searched(cell, searched->second))
-            (beside_region(cell) ? beside : farther).push_back(cell);
-        }
-      }
+  /// Of the cells farther off at each heading that the region has, `looks` are drawn, at other headings `samples`.
+  RegionCells(const PlanToCheck& plan, const CheckedRegion& region, int looks, int samples, Rng& rng)
+      : plan_(plan), grid_(plan.grid), region_(region), searched_(plan.searched.find(region.tray)) {
+    std::vector<bool> known(static_cast<std::size_t>(grid_.nx) * grid_.ny, false);
+    std::vector<bool> has_layer(grid_.headings.size(), false);
+    visit([&](const Cell& cell) {
+      if (!has(cell)) return;
+      inside.push_back(cell);
+      known[index(0, cell.ix, cell.iy)] = has_layer[cell.layer] = true;
+    });
+    for (const bool here : has_layer) {
+      const int count = here ? looks : samples;
+      elsewhere.insert(elsewhere.end(), 2, DrawnCells(count));
     }
+    visit([&](const Cell& cell) {
+      if (!is_left_out(cell)) return;
+      if (beside_region(cell)) return beside.push_back(cell);
+      if (known[index(0, cell.ix, cell.iy)]) elsewhere[2 * cell.layer].show(cell, rng);
+      elsewhere[2 * cell.layer + 1].show(cell, rng);
+    });
   }
 
   /// A place in a cell, from (0, 0), its lower corner, to (1, 1).
@@ -82,51 +110,52 @@ class RegionCells {
     return large;
   }
 
-  /// The cells farther off, by heading: first those places that the region has at other headings, then all.
-  std::vector<std::vector<Cell>> elsewhere() const {
-    const std::size_t plane = static_cast<std::size_t>(grid_.nx) * grid_.ny;
-    std::vector<bool> known(plane, false);
-    for (const Cell& cell : inside) known[index(0, cell.ix, cell.iy)] = true;
-    std::vector<std::vector<Cell>> layers(2 * grid_.headings.size());
-    for (const Cell& cell : farther) {
-      layers[2 * cell.layer + 1].push_back(cell);
-      if (known[index(0, cell.ix, cell.iy)]) layers[2 * cell.layer].push_back(cell);
-    }
-    return layers;
-  }
-
-  bool has_layer(int layer) const {
-    return std::any_of(inside.begin(), inside.end(), [&](const Cell& cell) { return cell.layer == layer; });
-  }
-
   /// The cells outside of the region around one of them, itself included.
   std::vector<Cell> around(const Cell& middle) const {
     std::vector<Cell> near;
-    for (const std::vector<Cell>* cells : {&beside, &farther}) {
-      std::copy_if(cells->begin(), cells->end(), std::back_inserter(near), [&](const Cell& cell) {
-        return cell.layer == middle.layer && std::abs(cell.ix - middle.ix) <= kAround &&
-               std::abs(cell.iy - middle.iy) <= kAround;
-      });
+    for (int iy = middle.iy - kAround; iy <= middle.iy + kAround; ++iy) {
+      for (int ix = middle.ix - kAround; ix <= middle.ix + kAround; ++ix) {
+        const Cell cell{middle.layer, ix, iy};
+        if (is_left_out(cell)) near.push_back(cell);
+      }
     }
     return near;
   }
 
-  std::vector<Cell> inside, beside, farther;
+  std::vector<Cell> inside, beside;
+  /// Those farther off, two for each heading: at places that the region has at other headings, and anywhere.
+  std::vector<DrawnCells> elsewhere;
 
  private:
-  bool has(int layer, int ix, int iy) const {
-    if (ix < 0 || iy < 0 || ix >= grid_.nx || iy >= grid_.ny) return false;
-    return region_.cells[index(layer, ix, iy)] != 0;
+  template <typename Visitor>
+  void visit(const Visitor& visitor) const {
+    for (int layer = 0; layer < static_cast<int>(grid_.headings.size()); ++layer) {
+      for (int iy = 0; iy < grid_.ny; ++iy) {
+        mmgrasp::detail::throw_if_interrupted();
+        for (int ix = 0; ix < grid_.nx; ++ix) visitor(Cell{layer, ix, iy});
+      }
+    }
+  }
+
+  bool on_grid(const Cell& cell) const {
+    return cell.ix >= 0 && cell.iy >= 0 && cell.ix < grid_.nx && cell.iy < grid_.ny;
+  }
+
+  bool has(const Cell& cell) const {
+    return on_grid(cell) && region_.cells[index(cell.layer, cell.ix, cell.iy)] != 0;
   }
 
   bool beside_region(const Cell& cell) const {
     for (const auto& [dx, dy] : {std::pair{kBeside, 0}, {-kBeside, 0}, {0, kBeside}, {0, -kBeside}}) {
-      if (has(cell.layer, cell.ix + dx, cell.iy + dy)) return true;
+      if (has({cell.layer, cell.ix + dx, cell.iy + dy})) return true;
     }
     return false;
   }
 
-  bool was_searched(const Cell& cell, const CheckedTray& tray) const {
+  /// Whether it was searched for the tray and is not in the region.
+  bool is_left_out(const Cell& cell) const {
+    if (searched_ == plan_.searched.end() || !on_grid(cell) || has(cell)) return false;
+    const CheckedTray& tray = searched_->second;
     const Eigen::Vector3d middle = pose(cell, 0.5, 0.5);
     if ((middle.head<2>() - tray.middle).norm() > tray.max_distance) return false;
     return lists(tray, middle.z()) || (tray.shares_headings && other_is_served(cell));
@@ -148,6 +177,7 @@ class RegionCells {
   const PlanToCheck& plan_;
   const CheckedGrid& grid_;
   const CheckedRegion& region_;
+  std::map<std::string, CheckedTray>::const_iterator searched_;
 };
 
 template <class T>
@@ -167,9 +197,9 @@ class RegionCheck {
     const std::vector<int> parts = wanted_parts(plan_, {region.tray});
     const std::size_t size = plan_.grid.headings.size() * static_cast<std::size_t>(plan_.grid.nx) * plan_.grid.ny;
     if (parts.empty() || region.cells.size() != size) return;  // the latter is said at the stops
-    const RegionCells cells(plan_, region);
-    const std::string where = "region of tray '" + region.tray + "'";
     const int count = context_.options.region_samples;
+    const RegionCells cells(plan_, region, std::min(kFirstLook, count), count, rng_);
+    const std::string where = "region of tray '" + region.tray + "'";
     std::vector<Eigen::Vector3d> poses;
     for (const Cell& cell : drawn(cells.inside, count, rng_)) {
       const double x = rng_.uniform(0, 1), y = rng_.uniform(0, 1);
@@ -237,10 +267,8 @@ class RegionCheck {
   /// Cells are drawn wherever the tray was searched; where one serves, those around it mostly must not.
   void missing_patch(const RegionCells& cells, const std::string& where, const std::vector<int>& parts) {
     const int count = context_.options.region_samples;
-    for (const std::vector<Cell>& layer : cells.elsewhere()) {
-      if (layer.empty()) continue;
-      const int looks = cells.has_layer(layer.front().layer) ? kFirstLook : count;
-      for (const Cell& cell : drawn(layer, looks, rng_)) {
+    for (const DrawnCells& layer : cells.elsewhere) {
+      for (const Cell& cell : layer.cells()) {
         if (context_.monitor.stopped()) return;
         if (!whole_cell_serves(cells, cell, parts)) continue;
         const std::vector<Cell> patch = cells.around(cell);

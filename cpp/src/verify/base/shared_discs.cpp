@@ -6,6 +6,7 @@
 #include <iterator>
 #include <utility>
 
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "verify/base/region_bits.hpp"
 
 // Lengths in here are in cells: cell (ix, iy) is the square [ix, ix + 1] x [iy, iy + 1].
@@ -197,6 +198,7 @@ class DiscSearch {
     std::vector<Square> squares;
     for (int layer = 0; layer < static_cast<int>(grid_.headings.size()); ++layer) {
       for (int iy = 0; iy < grid_.ny; ++iy) {
+        mmgrasp::detail::throw_if_interrupted();
         for (int ix = 0; ix < grid_.nx; ++ix) {
           RegionBits here(floor_.regions());
           for (int region = 0; region < floor_.regions(); ++region) {
@@ -253,8 +255,12 @@ class DiscSearch {
       }
       if (!at_any_cost && possible.count() > kFewEdges) return false;
     }
-    for (const Point& p : certain.crossings()) certain_.add(free_at(p, limited, least_));
+    for (const Point& p : certain.crossings()) {
+      mmgrasp::detail::throw_if_interrupted();
+      certain_.add(free_at(p, limited, least_));
+    }
     for (const Point& p : possible.crossings()) {
+      mmgrasp::detail::throw_if_interrupted();
       const RegionBits set = free_at(p, limited, possible_least_);
       if (!known(set)) possible_.add(set);
     }

@@ -1,5 +1,6 @@
 #include "verify/base/smallest_cover.hpp"
 
+#include <CbcEventHandler.hpp>
 #include <CbcModel.hpp>
 #include <CoinPackedMatrix.hpp>
 #include <OsiClpSolverInterface.hpp>
@@ -7,10 +8,22 @@
 #include <cmath>
 #include <iterator>
 
+#include "mmgrasp/core/detail/interruption.hpp"
+
 namespace mmgrasp::verify::detail {
 namespace {
 
 constexpr int kMaxNodes = 5000;  // Most nodes of branch and bound, so that the answer does not depend on a clock.
+
+/// Ends the search at its next event once the check is to end.
+class StopAtEvents : public CbcEventHandler {
+ public:
+  CbcAction event(CbcEvent) override {
+    const CancelToken* const token = mmgrasp::detail::interruption_token();
+    return token && token->stopped() ? stop : noAction;
+  }
+  CbcEventHandler* clone() const override { return new StopAtEvents(*this); }
+};
 
 bool holds(const RegionSet& outer, const RegionSet& inner) {
   return std::includes(outer.begin(), outer.end(), inner.begin(), inner.end());
@@ -63,7 +76,10 @@ CoverBounds smallest_cover(const std::vector<RegionSet>& sets, const RegionSet& 
   CbcModel model(solver);
   model.setLogLevel(0);
   model.setMaximumNodes(kMaxNodes);
+  const StopAtEvents stop_at_events;
+  model.passInEventHandler(&stop_at_events);
   model.branchAndBound();
+  mmgrasp::detail::throw_if_interrupted();
   const int wanted_sets = static_cast<int>(wanted.size());  // one of its own for each is always enough
   const bool found = model.bestSolution() != nullptr;
   const int most = found ? static_cast<int>(std::lround(model.getObjValue())) : wanted_sets;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "verify/context.hpp"
 
@@ -41,6 +42,7 @@ class CupsOnPart {
 
  private:
   bool meets(const Shape& kind, const Eigen::Vector3d& hand_point, double along) const {
+    mmgrasp::detail::throw_if_interrupted();
     LinkShape shape;
     shape.shape = kind;
     const Solid probe = make_solids({shape}).front();

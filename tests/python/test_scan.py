@@ -121,8 +121,11 @@ def test_two_runs_give_the_bytes_of_one(layout: str, tmp_path: Path) -> None:
     assert (tmp_path / "b" / "map.sdf").read_bytes() == once
     shutil.copytree(whole, first, dirs_exist_ok=True)
     assert run(first, tmp_path / "b") == 0
-    for name in ALL_FILES - {"report.html"}:  # its title is the folder
+    for name in ALL_FILES - {"report.html", LIST}:  # the report's title is the folder
         assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes(), name
+    listed = [json.loads((tmp_path / folder / LIST).read_text())["files"] for folder in "ab"]
+    assert listed[0].keys() == listed[1].keys()
+    assert {name for name in listed[0] if listed[0][name] != listed[1][name]} == {"report.html"}
 
 
 def test_every_nth_frame_and_the_rest_later(tmp_path: Path) -> None:

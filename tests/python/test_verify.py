@@ -11,6 +11,7 @@ import yaml
 
 import mmgrasp as mg
 import plan_breaks
+from conftest import ASSETS
 from mmgrasp.part_supply.consistency import masks
 from mmgrasp.part_supply.plan_writer import runs_of
 
@@ -119,6 +120,34 @@ def test_regions_of_few_cells_are_refused_where_there_are_more(small_plan_dict: 
     plan = copy.deepcopy(small_plan_dict)
     small_regions(plan, cells)
     assert "region-incomplete" in {fault.code for fault in mg.verify_plan(plan, samples=1).faults}
+
+
+@pytest.mark.slow
+def test_single_cells_left_out_to_need_another_stop_are_missed(tmp_path: Path) -> None:
+    """Two trays that one stop serves: holes in one region, a cell here and there, leave no disc to stop in."""
+    import numpy as np
+
+    scenario = yaml.safe_load((ASSETS / "scenarios" / "storeroom.yaml").read_text())
+    scenario["trays"] = scenario["trays"][:2]
+
+    def planned(uncertainty: float) -> dict[str, Any]:
+        path = tmp_path / f"{uncertainty}.yaml"
+        path.write_text(yaml.safe_dump({**scenario, "positioning_uncertainty": uncertainty}, sort_keys=False))
+        return mg.plan_part_supply(path).to_dict()
+
+    assert len(planned(0.1)["stops"]) == 1
+    plan = planned(0.3)
+    assert len(plan["stops"]) == 2
+    first, second = (layers.astype(bool) for layers in masks(plan).values())
+    _, rows, columns = np.indices(first.shape)
+    holes = first & second & (rows % 3 == 0) & (columns % 3 == 0)
+    assert 10 < holes.sum() < 0.1 * second.sum()
+    plan["regions"][1]["cells"] = {str(i): runs_of(layer.astype(int)) for i, layer in enumerate(second & ~holes)}
+    for place in (plan["scenario"], plan["scenario"]["options"], plan["premises"]):
+        place["positioning_uncertainty"] = 0.1
+    faults = {fault.code: fault.message for fault in mg.verify_plan(plan, samples=1).faults}
+    assert "not-minimal" not in faults, "one stop is not enough for the regions as they stand"
+    assert "1 stop is enough: the least number of stops is not 2" in faults["region-incomplete"]
 
 
 def test_a_heading_whose_cells_are_left_out_is_missed(small: dict[str, Any], tmp_path: Path) -> None:

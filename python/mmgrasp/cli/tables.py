@@ -113,6 +113,8 @@ def print_verdict(verdict: PlanVerdict, console: Console) -> None:
 
 def _least(verdict: PlanVerdict) -> str:
     """What the check proved about the number of stops by its own means."""
+    if verdict.minimal_stops == 1:
+        return "1 stop is the least"
     whole = "" if verdict.regions_searched else " for its regions as they stand (nothing was looked for that they lack)"
     if verdict.lower_bound == verdict.minimal_stops:
         return f"{verdict.minimal_stops} stops are the least{whole}"

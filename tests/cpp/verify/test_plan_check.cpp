@@ -293,6 +293,11 @@ TEST(PlanCheck, Openings) {
   plan = good_plan();
   motion(plan, 0, kRetreat).opening = 0.11;  // the gripper ends at 0.10
   EXPECT_TRUE(codes_of(plan).count("opening"));
+  plan = good_plan();
+  plan.clearance = 0.01;  // the plan's hands are open by twice that
+  EXPECT_EQ(codes_of(plan), Codes{});
+  plan.clearance = 0.01001;
+  EXPECT_EQ(codes_of(plan), Codes{"opening"});
 }
 
 TEST(PlanCheck, HoldingFlag) {

@@ -1,15 +1,13 @@
 // Draws base poses in the regions of a plan, beside them and elsewhere: the proof of the least number of stops rests on
 // them.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
-#include <map>
 
-#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/parallel.hpp"
 #include "verify/base/grasp_search.hpp"
+#include "verify/base/searched_cells.hpp"
 #include "verify/context.hpp"
 
 namespace mmgrasp::verify::detail {
@@ -24,18 +22,8 @@ constexpr double kPiece = 0.75;         // Largest share of the cells of one pie
 constexpr double kClaimed = 0.9;        // Least share of the poses drawn in the disc that a stop claims.
 constexpr std::size_t kFewest = 5;      // Fewer samples than this tell nothing.
 constexpr int kFirstLook = 5;           // Cells drawn in each piece of the border, more where these serve.
-constexpr double kBeyond = 0.02;        // Corners of such a cell are looked at so much of its size farther out.
 constexpr int kAround = 2;              // So many rows and columns around a cell that serves are looked at as well.
 constexpr std::size_t kPatch = 12;      // Fewest cells around it that a planner should have found.
-
-struct Cell {
-  int layer, ix, iy;
-};
-
-bool lists(const CheckedTray& tray, double heading) {
-  return std::any_of(tray.headings.begin(), tray.headings.end(),
-                     [&](double known) { return std::abs(wrap_angle(known - heading)) <= 1e-6; });
-}
 
 /// Some of the cells that are shown to it, each as likely as any other.
 class DrawnCells {
@@ -57,17 +45,17 @@ class DrawnCells {
 };
 
 /// Cells of one region, and those outside of it that were searched for its tray: beside it, and some farther off.
-class RegionCells {
+class RegionCells : public SearchedCells {
  public:
   /// Of the cells farther off at each heading that the region has, `looks` are drawn, at other headings `samples`.
   RegionCells(const PlanToCheck& plan, const CheckedRegion& region, int looks, int samples, Rng& rng)
-      : plan_(plan), grid_(plan.grid), region_(region), searched_(plan.searched.find(region.tray)) {
+      : SearchedCells(plan, region), grid_(plan.grid) {
     std::vector<bool> known(static_cast<std::size_t>(grid_.nx) * grid_.ny, false);
     std::vector<bool> has_layer(grid_.headings.size(), false);
     visit([&](const Cell& cell) {
       if (!has(cell)) return;
       inside.push_back(cell);
-      known[index(0, cell.ix, cell.iy)] = has_layer[cell.layer] = true;
+      known[index({0, cell.ix, cell.iy})] = has_layer[cell.layer] = true;
     });
     for (const bool here : has_layer) {
       const int count = here ? looks : samples;
@@ -76,15 +64,9 @@ class RegionCells {
     visit([&](const Cell& cell) {
       if (!is_left_out(cell)) return;
       if (beside_region(cell)) return beside.push_back(cell);
-      if (known[index(0, cell.ix, cell.iy)]) elsewhere[2 * cell.layer].show(cell, rng);
+      if (known[index({0, cell.ix, cell.iy})]) elsewhere[2 * cell.layer].show(cell, rng);
       elsewhere[2 * cell.layer + 1].show(cell, rng);
     });
-  }
-
-  /// A place in a cell, from (0, 0), its lower corner, to (1, 1).
-  Eigen::Vector3d pose(const Cell& cell, double x, double y) const {
-    return {grid_.origin.x() + (cell.ix + x) * grid_.resolution, grid_.origin.y() + (cell.iy + y) * grid_.resolution,
-            grid_.headings[cell.layer]};
   }
 
   /// The cells beside the region by the side of it on which they lie: those of each heading in sectors around its
@@ -127,24 +109,6 @@ class RegionCells {
   std::vector<DrawnCells> elsewhere;
 
  private:
-  template <typename Visitor>
-  void visit(const Visitor& visitor) const {
-    for (int layer = 0; layer < static_cast<int>(grid_.headings.size()); ++layer) {
-      for (int iy = 0; iy < grid_.ny; ++iy) {
-        mmgrasp::detail::throw_if_interrupted();
-        for (int ix = 0; ix < grid_.nx; ++ix) visitor(Cell{layer, ix, iy});
-      }
-    }
-  }
-
-  bool on_grid(const Cell& cell) const {
-    return cell.ix >= 0 && cell.iy >= 0 && cell.ix < grid_.nx && cell.iy < grid_.ny;
-  }
-
-  bool has(const Cell& cell) const {
-    return on_grid(cell) && region_.cells[index(cell.layer, cell.ix, cell.iy)] != 0;
-  }
-
   bool beside_region(const Cell& cell) const {
     for (const auto& [dx, dy] : {std::pair{kBeside, 0}, {-kBeside, 0}, {0, kBeside}, {0, -kBeside}}) {
       if (has({cell.layer, cell.ix + dx, cell.iy + dy})) return true;
@@ -152,32 +116,7 @@ class RegionCells {
     return false;
   }
 
-  /// Whether it was searched for the tray and is not in the region.
-  bool is_left_out(const Cell& cell) const {
-    if (searched_ == plan_.searched.end() || !on_grid(cell) || has(cell)) return false;
-    const CheckedTray& tray = searched_->second;
-    const Eigen::Vector3d middle = pose(cell, 0.5, 0.5);
-    if ((middle.head<2>() - tray.middle).norm() > tray.max_distance) return false;
-    return lists(tray, middle.z()) || (tray.shares_headings && other_is_served(cell));
-  }
-
-  /// Whether some tray is served there at a heading of its own.
-  bool other_is_served(const Cell& cell) const {
-    return std::any_of(plan_.regions.begin(), plan_.regions.end(), [&](const CheckedRegion& other) {
-      const auto tray = plan_.searched.find(other.tray);
-      return tray != plan_.searched.end() && lists(tray->second, grid_.headings[cell.layer]) &&
-             other.cells.size() == region_.cells.size() && other.cells[index(cell.layer, cell.ix, cell.iy)] != 0;
-    });
-  }
-
-  std::size_t index(int layer, int ix, int iy) const {
-    return (static_cast<std::size_t>(layer) * grid_.ny + iy) * grid_.nx + ix;
-  }
-
-  const PlanToCheck& plan_;
   const CheckedGrid& grid_;
-  const CheckedRegion& region_;
-  std::map<std::string, CheckedTray>::const_iterator searched_;
 };
 
 template <class T>
@@ -270,7 +209,7 @@ class RegionCheck {
     for (const DrawnCells& layer : cells.elsewhere) {
       for (const Cell& cell : layer.cells()) {
         if (context_.monitor.stopped()) return;
-        if (!whole_cell_serves(cells, cell, parts)) continue;
+        if (!whole_cell_serves(plan_, search_, cells, cell, parts)) continue;
         const std::vector<Cell> patch = cells.around(cell);
         if (patch.size() < kPatch) continue;
         const Look look = looked_at(cells, patch, count, parts);
@@ -289,7 +228,7 @@ class RegionCheck {
     Look look;
     for (const Cell& cell : drawn(piece, count, rng_)) {
       if (context_.monitor.stopped()) return look;
-      look.good += whole_cell_serves(cells, cell, parts);
+      look.good += whole_cell_serves(plan_, search_, cells, cell, parts);
       ++look.tried;
     }
     return look;
@@ -302,8 +241,7 @@ class RegionCheck {
   }
 
   bool serves(const Eigen::Vector3d& pose, const std::vector<int>& parts, bool thoroughly = false) {
-    Faults none;
-    return check_workspace(plan_, pose, 0, "", none) && search_.serves(pose, parts, thoroughly);
+    return base_pose_serves(plan_, search_, pose, parts, thoroughly);
   }
 
   /// How many of the poses serve, up to `needed`: as long as these are missing, a pose that seems lost is checked
@@ -316,16 +254,6 @@ class RegionCheck {
     for (const Eigen::Vector3d& pose : lost)
       if (good < needed && !context_.monitor.stopped()) good += serves(pose, parts, true);
     return good;
-  }
-
-  /// Whether a cell serves the parts at its corners and its middle, which is how planners look at a cell. Corners are
-  /// taken a little farther out: where the robot just touches something at one, either answer is right.
-  bool whole_cell_serves(const RegionCells& cells, const Cell& cell, const std::vector<int>& parts) {
-    constexpr double kLow = -kBeyond, kHigh = 1 + kBeyond;
-    constexpr std::array<std::array<double, 2>, 5> kPlaces = {
-        {{kLow, kLow}, {kHigh, kHigh}, {kLow, kHigh}, {kHigh, kLow}, {0.5, 0.5}}};
-    return std::all_of(kPlaces.begin(), kPlaces.end(),
-                       [&](const auto& place) { return serves(cells.pose(cell, place[0], place[1]), parts); });
   }
 
   const Context& context_;
@@ -356,6 +284,7 @@ void check_regions(const Context& context, Faults& faults, std::size_t& configur
   parallel_for(found.size(), context.options.threads, work, context.monitor, "regions");
   for (const Faults& some : found) faults.insert(faults.end(), some.begin(), some.end());
   for (const Judge& judge : judges) configurations += judge.queries();
+  if (!context.plan.padded) check_left_out_cells(context, pools, faults, configurations);
 }
 
 }  // namespace mmgrasp::verify::detail

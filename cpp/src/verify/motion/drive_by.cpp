@@ -98,6 +98,9 @@ class DriveByCheck {
       fault("opening", text(opening) + " m is outside [" + text(width_) + ", " + text(plan_.max_opening) + "]");
       return false;
     }
+    if (opening < context_.pregrasp_opening(width_) - 1e-6)
+      fault("opening", text(opening) + " m leaves less than the clearance of " + text(plan_.clearance) +
+                           " m on each side of a part of width " + text(width_) + " m");
     const double needed = (opening - width_) / plan_.closing_speed, taken = drive_by_.closed_at - drive_by_.close_at;
     const bool inside = drive_by_.close_at >= motion_.times.front() && drive_by_.closed_at < motion_.times.back();
     if (inside && taken >= needed - 1e-6) return true;

@@ -3,9 +3,11 @@
     python benchmarks/gripper_design/belt_drive.py [--runs 20] [--each 5] [--noise 0.5] [--write]
 
 Runs of the whole order with the designed grippers, and with those designed for fingers of at most --longest mm, which P1's rule refuses: it has one
-shortest length for a segment (5.2.3, figure 5.13), the one with which fingers hold all of it, where ours has one for each depth (docs/methods/gripper_design.md). Then runs of the whole order, and of each operation by itself, with fingers that are too short,
-that do not open wide enough, and that do not close far enough. Needs the shared data (see belt_drive.yaml) and MuJoCo. With --write the table
-goes to belt_drive.md and the pictures to docs/images/belt_drive.png. The same seeds give the same runs on one machine.
+shortest length for a segment (5.2.3, figure 5.13), the one with which fingers hold all of it, where ours has one for each depth (docs/methods/gripper_design.md).
+Then runs of the whole order, and of each operation by itself, with fingers that are too short, that do not open wide enough, and that do not close far
+enough. A run counts as a whole assembly where every operation succeeded and every part is in its place at the very end; an operation by itself where
+the parts before it are there as well. Needs the shared data (see belt_drive.yaml) and MuJoCo. With --write the table goes to belt_drive.md and the
+pictures to docs/images/belt_drive.png. The same seeds give the same runs on one machine.
 """
 
 from __future__ import annotations
@@ -22,7 +24,7 @@ from mmgrasp._core import Gripper, SegmentRequirement
 from mmgrasp.grippers import load_assembly, plan_grippers
 from mmgrasp.grippers.planning import GripperPlan
 from mmgrasp.reproduce.grasping_trials import wilson
-from mmgrasp.sim.assembly_trial import AssemblyCell, Film, OperationOutcome, TrialChoice, chosen, other_gripper
+from mmgrasp.sim.assembly_trial import AssemblyCell, AssemblyOutcome, Film, TrialChoice, chosen, other_gripper
 from mmgrasp.sim.pictures import Painter
 from mmgrasp.viz.png import write_png
 from mmgrasp.viz.raster import Camera
@@ -79,23 +81,20 @@ def shorter(plan: GripperPlan, longest: float) -> GripperPlan:
 def shorter_lines(plan: GripperPlan, short: GripperPlan, cell: AssemblyCell, runs: int) -> list[str]:
     """How the fingers that P1's rule refuses fare, and which operations it refuses them in."""
     grippers, grasps = chosen(short)
-    outcomes = [cell.run(grippers, grasps, seed) for seed in range(runs)]
-    good = sum(len(run) == len(plan.assembly.steps) and run[-1].success for run in outcomes)
+    outcomes = whole(cell, short, grippers, runs)
     lines = [
-        f"Fingers of at most {1e3 * short.assembly.fingers.longest:g} mm, whole assemblies: {rate(good, runs)}.",
+        f"Fingers of at most {1e3 * short.assembly.fingers.longest:g} mm, whole assemblies: {complete(outcomes)}.",
         "",
         "| operation | fingers [mm] | shortest for all of the segment [mm] | shortest as held [mm] | held deep [mm] | P1's rule | in its place |",
         "|---|---|---|---|---|---|---|",
     ]
     for step, gripper, grasp, asked in zip(short.assembly.steps, grippers, grasps, requirements(short), strict=True):
-        tried = [o for run in outcomes for o in run if o.name == step.name]
         least = whole_segment(plan, asked)
         lines.append(
             f"| {step.name} | {1e3 * gripper.finger_length:.1f} | {1e3 * least:.1f} | {1e3 * asked.min_finger_length:.1f} | {1e3 * grasp.contact_length:.1f} "
-            f"| {'allows' if least < gripper.finger_length else 'refuses'} | {rate(sum(o.success for o in tried), len(tried))} |"
+            f"| {'allows' if least < gripper.finger_length else 'refuses'} | {placed(outcomes, step.name)} |"
         )
-    reasons = Counter(f"{o.name}, {o.why}" for run in outcomes for o in run if not o.success)
-    return [*lines, "", "Failed: " + ("; ".join(f"{text}: {n}" for text, n in reasons.most_common()) or "none") + "."]
+    return [*lines, "", *failures(outcomes)]
 
 
 def rate(good: int, count: int) -> str:
@@ -104,25 +103,72 @@ def rate(good: int, count: int) -> str:
     return f"{good} of {count} ({100 * low:.0f} to {100 * high:.0f} %)"
 
 
-def whole(cell: AssemblyCell, plan: GripperPlan, grippers: list[Gripper], runs: int) -> list[list[OperationOutcome]]:
+def whole(cell: AssemblyCell, plan: GripperPlan, grippers: list[Gripper], runs: int) -> list[AssemblyOutcome]:
     """Runs of the whole order."""
     return [cell.run(grippers, chosen(plan)[1], seed) for seed in range(runs)]
 
 
-def designed_table(plan: GripperPlan, outcomes: list[list[OperationOutcome]]) -> list[str]:
+def complete(outcomes: list[AssemblyOutcome]) -> str:
+    """The rate of whole assemblies."""
+    return rate(sum(run.complete for run in outcomes), len(outcomes))
+
+
+def placed(outcomes: list[AssemblyOutcome], operation: str) -> str:
+    """The rate at which an operation succeeded where it was tried."""
+    tried = [o for run in outcomes for o in run.operations if o.name == operation]
+    return rate(sum(o.success for o in tried), len(tried))
+
+
+def failures(outcomes: list[AssemblyOutcome]) -> list[str]:
+    """A line for each run that is no whole assembly: what failed, and where every part that is not in its place was at the end."""
+    lines = []
+    for seed, run in enumerate(outcomes):
+        if run.complete:
+            continue
+        failed = "; ".join(f"{o.name}, {o.why}" for o in run.operations if not o.success) or "no operation failed"
+        ends = "; ".join(
+            f"{p.name} {1e3 * p.deep:.1f} mm above its place, {1e3 * p.aside:.1f} mm aside, {np.degrees(p.tilted):.0f} degrees tilted"
+            for p in run.places
+            if not p.there
+        )
+        lines.append(f"- Seed {seed}: {failed}. At the end: {ends or 'every part in its place'}.")
+    return lines or ["No run failed."]
+
+
+def designed_table(plan: GripperPlan, outcomes: list[AssemblyOutcome]) -> list[str]:
     """Rows of the operations with the designed grippers."""
     lines = [
-        "| operation | gripper | opening [mm] | least fingers [mm] | in its place | went searching | search, median of those [s] |"
+        "| operation | gripper | opening [mm] | least fingers [mm] | in its place | there at the end | went searching | search, median of those [s] |"
     ]
-    lines.append("|---|---|---|---|---|---|---|")
+    lines.append("|---|---|---|---|---|---|---|---|")
     for step, gripper, asked in zip(plan.assembly.steps, chosen(plan)[0], requirements(plan), strict=True):
-        tried = [o for run in outcomes for o in run if o.name == step.name]
-        searched = [o.searched for o in tried if o.searched > 0]
+        searched = [o.searched for run in outcomes for o in run.operations if o.name == step.name and o.searched > 0]
+        ends = [p.there for run in outcomes for p in run.places if p.name == step.active[0]]
         median = f"{np.median(searched):.1f}" if searched else "-"
         lines.append(
             f"| {step.name} | {gripper.name} | {1e3 * asked.opening:.1f} | {1e3 * asked.min_finger_length:.1f} "
-            f"| {rate(sum(o.success for o in tried), len(tried))} | {len(searched)} | {median} |"
+            f"| {placed(outcomes, step.name)} | {sum(ends)} of {len(ends)} | {len(searched)} | {median} |"
         )
+    return lines
+
+
+def refused_lines(plan: GripperPlan, cell: AssemblyCell, runs: int, each: int) -> list[str]:
+    """Rows of the grippers that (5.2) refuses: whole assemblies, and each operation by itself."""
+    names = [step.name for step in plan.assembly.steps]
+    lines = [f"| grippers that (5.2) refuses | whole assemblies | ended at | {' | '.join(names)} |"]
+    lines.append("|---" * (3 + len(names)) + "|")
+    for name, grippers in refused(plan).items():
+        outcomes = whole(cell, plan, grippers, runs)
+        ends = Counter(run.operations[-1].name for run in outcomes if not run.operations[-1].success)
+        cells = []
+        for gripper, asked in zip(grippers, requirements(plan), strict=True):
+            tried = [cell.run(grippers, chosen(plan)[1], seed, steps=[asked.part]) for seed in range(each)]
+            reasons = Counter(run.why for run in tried if run.why)
+            verdict = "allowed" if allowed(gripper, asked) else "refused"
+            why = "".join(f"; {text}: {count}" for text, count in reasons.items())
+            cells.append(f"{verdict}, {sum(run.complete for run in tried)} of {len(tried)}{why}")
+        ended = ", ".join(f"{n}: {c}" for n, c in ends.items())
+        lines.append(f"| {name} | {complete(outcomes)} | {ended} | {' | '.join(cells)} |")
     return lines
 
 
@@ -162,44 +208,18 @@ def main() -> None:
             f"- {g.name}: {g.fingers} fingers of {1e3 * g.finger_length:.1f} mm, opens from {1e3 * g.min_opening:.1f} to {1e3 * g.max_opening:.1f} mm"
         )
     outcomes = whole(cell, plan, chosen(plan)[0], given.runs)
-    complete = sum(len(run) == len(plan.assembly.steps) and run[-1].success for run in outcomes)
     lines += [
         "",
-        f"Whole assemblies, {given.noise:g} mm of noise: {rate(complete, given.runs)}.",
+        f"Whole assemblies, {given.noise:g} mm of noise: {complete(outcomes)}.",
         "",
         *designed_table(plan, outcomes),
     ]
-    for run, seed in zip(outcomes, range(given.runs), strict=True):
-        bad = [o for o in run if not o.success]
-        lines += [
-            f"\nSeed {seed}: {o.name}, {o.why} ({1e3 * o.deep:.1f} mm above it, {1e3 * o.aside:.1f} mm aside)."
-            for o in bad
-        ]
+    lines += ["", *failures(outcomes)]
     if given.longest > 0:
         lines += ["", *shorter_lines(plan, shorter(plan, 1e-3 * given.longest), cell, given.runs)]
     print("\n".join(lines), flush=True)
     told = len(lines)
-    lines += [
-        "",
-        "| grippers that (5.2) refuses | whole assemblies | ended at | "
-        + " | ".join(s.name for s in plan.assembly.steps)
-        + " |",
-    ]
-    lines.append("|---" * (3 + len(plan.assembly.steps)) + "|")
-    for name, grippers in refused(plan).items():
-        runs = whole(cell, plan, grippers, given.runs)
-        good = sum(len(run) == len(plan.assembly.steps) and run[-1].success for run in runs)
-        ends = Counter(run[-1].name for run in runs if not run[-1].success)
-        cells = []
-        for k, asked in enumerate(requirements(plan)):
-            tried = [cell.run(grippers, chosen(plan)[1], s, steps=[asked.part])[0] for s in range(given.each)]
-            reasons = Counter(o.why for o in tried if o.why)
-            verdict = "allowed" if allowed(grippers[k], asked) else "refused"
-            why = "".join(f"; {text}: {count}" for text, count in reasons.items())
-            cells.append(f"{verdict}, {sum(o.success for o in tried)} of {len(tried)}{why}")
-        lines.append(
-            f"| {name} | {rate(good, given.runs)} | {', '.join(f'{n}: {c}' for n, c in ends.items())} | {' | '.join(cells)} |"
-        )
+    lines += ["", *refused_lines(plan, cell, given.runs, given.each)]
     print("\n".join(lines[told:]))
     if given.write:
         (HERE / "belt_drive.md").write_text("\n".join(lines) + "\n")

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 #include <map>
 
 #include "mmgrasp/core/limits.hpp"
@@ -63,8 +64,18 @@ py::object function_argument(py::object value, const char* name) {
   return value;
 }
 
+namespace {
+
+/// True and False, of NumPy's kind as well: they are numbers to Python.
+bool is_truth_value(const py::handle& value) {
+  const std::string_view kind = Py_TYPE(value.ptr())->tp_name;
+  return PyBool_Check(value.ptr()) || kind == "numpy.bool" || kind == "numpy.bool_";
+}
+
+}  // namespace
+
 void convert(const py::handle& value, const std::string& name, double& out) {
-  if (PyBool_Check(value.ptr()) ||
+  if (is_truth_value(value) ||
       !(PyFloat_Check(value.ptr()) || PyIndex_Check(value.ptr()) || PyObject_HasAttrString(value.ptr(), "__float__"))) {
     refuse_value(name, value, "a number");
   }
@@ -76,7 +87,7 @@ void convert(const py::handle& value, const std::string& name, double& out) {
 void convert(const py::handle& value, const std::string& name, std::int64_t& out) {
   const bool whole =
       PyFloat_Check(value.ptr()) && std::floor(PyFloat_AS_DOUBLE(value.ptr())) == PyFloat_AS_DOUBLE(value.ptr());
-  if (PyBool_Check(value.ptr()) || !(whole || PyIndex_Check(value.ptr()))) refuse_value(name, value, "a whole number");
+  if (is_truth_value(value) || !(whole || PyIndex_Check(value.ptr()))) refuse_value(name, value, "a whole number");
   const double number = py::cast<double>(value);
   if (!(std::abs(number) < 9e15)) refuse_value(name, value, "a whole number below 9e15");
   out = whole ? static_cast<std::int64_t>(number)

@@ -119,6 +119,11 @@ def _fault(parameters: list[_Parameter], args: tuple[Any, ...], kwargs: dict[str
     given = dict(zip([p.name for p in by_place], args, strict=False)) | kwargs
     for place, parameter in enumerate(parameters):
         if parameter.name in given:
+            if isinstance(given[parameter.name], str) and not _is_text(given[parameter.name]):
+                return (
+                    place,
+                    f"{parameter.name} = {_short(given[parameter.name])}: holds half a character, which no text has (a lone surrogate)",
+                )
             at = _misfit(parameter.annotation, given[parameter.name], _BOUND)
             if at is not None:
                 where, value, annotation = at
@@ -136,6 +141,14 @@ def _fault(parameters: list[_Parameter], args: tuple[Any, ...], kwargs: dict[str
                 return len(by_place), f"{name} is given twice"
     values = ", ".join([*map(_short, args["self" in names :]), *(f"{k}={_short(v)}" for k, v in kwargs.items())])
     return -1, f"takes ({', '.join(shown)}), got ({values})"
+
+
+def _is_text(value: str) -> bool:
+    try:
+        value.encode()
+    except UnicodeEncodeError:
+        return False
+    return True
 
 
 def checked(function: Callable[P, R]) -> Callable[P, R]:

@@ -56,7 +56,7 @@ def check_folder(path: Path) -> None:
                 folder.rmdir()
 
 
-PNG, GIF = b"\x89PNG\r\n\x1a\n", b"GIF8"  # begin pictures and films
+PNG = b"\x89PNG\r\n\x1a\n"  # begins pictures
 
 
 def check_file(path: Path, begins: bytes) -> None:

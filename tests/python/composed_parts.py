@@ -213,7 +213,7 @@ def ball_rod(rng: np.random.Generator) -> Part:
 
 
 def composed_parts(count: int = 50, seed: int = 7) -> list[tuple[Part, float]]:
-    """Parts and the noise of each [mm]: every second one has some."""
+    """Parts and the noise of each [mm]: every kind once without, then once with, and so on."""
     out = []
     for k in range(count):
         rng = np.random.default_rng((seed, k))

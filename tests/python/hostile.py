@@ -16,7 +16,6 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections import Counter
 from collections.abc import Iterable
 from pathlib import Path
 from typing import NamedTuple
@@ -25,8 +24,10 @@ from xml.etree import ElementTree
 HERE = Path(__file__).parent
 REPOSITORY = HERE.parents[1]
 KEPT = REPOSITORY / "build" / "hostile"
+RECORD = HERE / "hostile_record.json"
 PAGE = REPOSITORY / "docs" / "hostile.md"
 BEGIN, END = "<!-- tries: written by tests/python/hostile.py -->", "<!-- end of tries -->"
+LONGEST_QUICK = 60.0  # [s]; somebody waits for it
 SCENARIO = REPOSITORY / "python" / "mmgrasp" / "assets" / "scenarios" / "storeroom.yaml"
 
 
@@ -40,16 +41,18 @@ class Part(NamedTuple):
 
 PARTS = {
     "texts": Part("YAML and JSON texts", "yaml_text file_fuzz key_fuzz option_bounds floor_map",
-                  (f"file_fuzz.py {SCENARIO} 20000", *(f"key_fuzz.py {door}" for door in
-                   ("scenario", "scanned", "pipe", "assembly", "profile", "sensors", "map")))),
+                  ("file_fuzz.py {scenario} 20000", "file_fuzz.py plan 20000", *(f"key_fuzz.py {door}" for door in
+                   ("scenario", "scanned", "pipe", "assembly", "profile", "gripper", "sensors", "map", "plan")))),
     "frames": Part("frames and maps of surfaces", "frames_fuzz map_file_fuzz scan_refusals"),
     "readers": Part("files of robots, meshes, clouds and trees", "module_files", ("./dev fuzz 600",)),
-    "calls": Part("every call, array and number of the stubs", "bad_arguments argument_errors python_arguments odd_objects numbers", ("number_walk.py",)),
+    "calls": Part("every call, array and number of the stubs",
+                  "bad_arguments argument_errors python_arguments odd_objects numbers number_walk", ("number_walk.py",)),
     "limits": Part("limits, threads, memory, forks", "limits interpreter threads forks small_processes"),
     "command": Part("options and streams of the command", "cli_doors cli_options command_fuzz", ("command_fuzz.py 400",)),
-    "places": Part("places that are written", "output_places output_commands", ("killed_runs.py 30",)),
+    "places": Part("places that are written", "output_places output_commands killed_runs", ("killed_runs.py 60",)),
     "stops": Part("Ctrl-C, signals, costly calls", "interrupt signals long_work costly_calls"),
-    "verify": Part("changed plans and scenarios", "verify_files plan_mutations", ("mutation_shares.py 4",)),
+    "verify": Part("changed plans and scenarios", "verify_files plan_mutations mutation_shares",
+                   ("mutation_shares.py 4",)),
     "plans": Part("odd scenarios: solved plans hold", "odd_scenarios",
                   ("odd_scenarios.py 500", "odd_scenarios.py 500 1 {kept} all", "odd_scenarios.py 100 1 {kept} advice")),
 }  # fmt: skip
@@ -59,26 +62,46 @@ def files(part: Part) -> list[str]:
     return [str(HERE / f"test_{name}.py") for name in part.tests.split()]
 
 
-def run_tests(parts: Iterable[str], arguments: list[str]) -> tuple[bool, dict[str, float], Counter[str]]:
-    """Whether all passed; seconds and tests of each part."""
-    seconds = dict.fromkeys(parts, 0.0)
-    tests: Counter[str] = Counter()
+class Tests(NamedTuple):
+    """What became of the tests of one part."""
+
+    seconds: float = 0.0
+    made: int = 0
+    """Without those that were skipped."""
+    failed: int = 0
+
+
+def count_tests(report: Path, parts: Iterable[str]) -> dict[str, Tests]:
+    """Pytest's report (--junitxml), part by part."""
+    of_file = {file: name for name in parts for file in PARTS[name].tests.split()}
+    found = dict.fromkeys(of_file.values(), Tests())
+    for case in ElementTree.parse(report).iter("testcase"):
+        # A file that cannot be collected is an error case whose classname is empty.
+        words = case.get("classname") or case.get("name") or ""
+        part = of_file[next(word.removeprefix("test_") for word in words.split(".") if word.startswith("test_"))]
+        is_failed = case.find("failure") is not None or case.find("error") is not None
+        known = found[part]
+        found[part] = Tests(
+            known.seconds + float(case.get("time", 0)),
+            known.made + (case.find("skipped") is None),
+            known.failed + is_failed,
+        )
+    return found
+
+
+def run_tests(parts: Iterable[str], arguments: list[str]) -> tuple[bool, dict[str, Tests]]:
+    """Whether all passed, and what became of those of each part."""
     names = [file for part in parts for file in files(PARTS[part])]
     with tempfile.TemporaryDirectory() as folder:
         report = Path(folder) / "report.xml"
         command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", f"--junitxml={report}"]
         done = subprocess.run([*command, *arguments, *names], cwd=REPOSITORY, check=False)
-        for case in ElementTree.parse(report).iter("testcase"):
-            file = case.get("classname", "").split(".")[-1].removeprefix("test_")
-            part = next(name for name in parts if file in PARTS[name].tests.split())
-            seconds[part] += float(case.get("time", 0))
-            tests[part] += 1
-    return done.returncode == 0, seconds, tests
+        return done.returncode == 0, count_tests(report, parts)
 
 
 def run_search(words: str) -> tuple[bool, float, int]:
-    """Whether nothing was found, seconds, and the tries that the search says it made."""
-    first, *others = words.replace("{kept}", str(KEPT)).split()
+    """Whether nothing was found, seconds, and the tries that the search says it made; one that says none has failed."""
+    first, *others = words.format(kept=KEPT, scenario=SCENARIO).split()
     begun = time.monotonic()
     command = [first] if first.startswith("./") else [sys.executable, "-u", str(HERE / first)]
     tries = 0
@@ -87,35 +110,54 @@ def run_search(words: str) -> tuple[bool, float, int]:
             print(line, end="", flush=True)
             if found := re.match(r"(\d+) tries", line):
                 tries += int(found[1])
-    return running.returncode == 0, time.monotonic() - begun, tries
+    return running.returncode == 0 and tries > 0, time.monotonic() - begun, tries
 
 
 def keep(part: str, what: str, tries: int, good: bool) -> None:
     """Remembers the last run of a part's tests or of one of its searches, for --write."""
-    record = KEPT / "record.json"
-    known = json.loads(record.read_text()) if record.exists() else {}
-    row = {"part": part, "tries": tries, "good": good, "day": datetime.date.today().isoformat()}
-    record.write_text(json.dumps({**known, f"{part}: {what}": row}, indent=1))
+    row = {"tries": tries, "good": good, "day": datetime.date.today().isoformat()}
+    known = json.loads(RECORD.read_text())
+    RECORD.write_text(json.dumps({**known, f"{part}: {what}": row}, indent=1) + "\n")
 
 
 def table() -> str:
     """What was tried, part by part, as docs/hostile.md has it."""
-    record = json.loads((KEPT / "record.json").read_text())
-    lines = ["| door | run | tries | found | day |", "|---|---|---|---|---|"]
+    record = json.loads(RECORD.read_text())
+    lines, tries = ["| door | run | tries | found | day |", "|---|---|---|---|---|"], 0
     for name, part in PARTS.items():
         for what in ("tests", *part.night):
+            shown = what.format(kept="", scenario=SCENARIO.name).replace("  ", " ")
             row = record.get(f"{name}: {what}")
-            shown = what.replace(str(SCENARIO), SCENARIO.name).replace(" {kept}", "")
-            if row is None or not row["tries"]:
+            if row is None:
+                lines.append(f"| {part.title} | `{shown}` | - | not run yet | - |")
                 continue
             found = "nothing" if row["good"] else "something"
             lines.append(f"| {part.title} | `{shown}` | {row['tries']:,} | {found} | {row['day']} |")
-    return "\n".join([*lines, "", f"{sum(row['tries'] for row in record.values()):,} tries in all."])
+            tries += row["tries"]
+    return "\n".join([*lines, "", f"{tries:,} tries in all."])
 
 
 def write() -> None:
     before, rest = PAGE.read_text().split(BEGIN)
     PAGE.write_text(f"{before}{BEGIN}\n\n{table()}\n\n{END}{rest.split(END)[1]}")
+
+
+def quick_size(took: float) -> str:
+    """What the quick size took on the clock, and that it was too long."""
+    text = f"the quick size took {took:.0f} s on the clock"
+    return f"{text}: MORE THAN {LONGEST_QUICK:.0f} s, mark tests as slow" if took > LONGEST_QUICK else text
+
+
+def search_all(parts: Iterable[str]) -> tuple[list[str], list[str]]:
+    """Runs the searches of the parts: a line about each, and those that failed."""
+    lines, failed = [], []
+    for name in parts:
+        for words in PARTS[name].night:
+            good, took, tries = run_search(words)
+            keep(name, words, tries, good)
+            lines.append(f"{words:57} {tries:7} tries {took:8.1f} s{'' if good else '  FAILED'}")
+            failed += [] if good else [words]
+    return lines, failed
 
 
 def main() -> int:
@@ -130,20 +172,21 @@ def main() -> int:
     # As continuous integration does. What is measured in a night run has the machine for itself.
     quick = ["-m", "not slow", "-n", str(os.cpu_count() or 1), "--dist", "loadfile"]
     begun = time.monotonic()
-    good, seconds, tests = run_tests(chosen, [] if night else quick)
+    good, tests = run_tests(chosen, [] if night else quick)
+    took = time.monotonic() - begun
     failed = [] if good else ["tests"]
-    lines = [f"{PARTS[name].title:45} {tests[name]:5} tests {seconds[name]:8.1f} s" for name in chosen]
-    lines.append(f"{'all tests':45} {sum(tests.values()):5} tests {time.monotonic() - begun:8.1f} s on the clock")
+    lines = [f"{PARTS[name].title:45} {tests[name].made:5} tests {tests[name].seconds:8.1f} s" for name in chosen]
+    lines.append(f"{'all tests':45} {sum(found.made for found in tests.values()):5} tests {took:8.1f} s on the clock")
     KEPT.mkdir(parents=True, exist_ok=True)
-    for name in chosen if night else []:
-        keep(name, "tests", tests[name], good)
-        for words in PARTS[name].night:
-            good, took, tries = run_search(words)
-            keep(name, words, tries, good)
-            lines.append(f"{words:57} {tries:7} tries {took:8.1f} s{'' if good else '  FAILED'}")
-            failed += [] if good else [words]
+    if night:
+        for name in chosen:
+            keep(name, "tests", tests[name].made, not tests[name].failed)
+        told, missed = search_all(chosen)
+        lines, failed = lines + told, failed + missed
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     lines.append(f"{'processor time of all':57} {used.ru_utime + used.ru_stime:8.1f} s")
+    if not night and len(chosen) == len(PARTS):
+        lines.append(quick_size(took))
     print("\n".join(lines))
     print(f"failed: {', '.join(failed)} (what was found is in build/hostile)" if failed else "nothing found")
     return 1 if failed else 0

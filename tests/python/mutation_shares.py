@@ -1,15 +1,21 @@
-"""How many changes of plans and scenarios `verify` refuses, of every field in every way; the table in docs/methods/verify.md.
+"""How many changes of plans and scenarios `verify` refuses, of every field in every way; the table in
+docs/methods/verify.md.
 
-    python tests/python/mutation_shares.py [OF_EACH [MINUTES]]    goes on where the last run ended (build/mutations), each at most so long
+    python tests/python/mutation_shares.py [OF_EACH [MINUTES]]    each document at most so long
     python tests/python/mutation_shares.py --write                puts the shares of the last run into the page
 
-Of places that differ in indices alone OF_EACH (4) are tried. It fails on a change that goes unnoticed without a reason, on a
-reason that nothing needs, and on a share below the least.
+A run goes on where the last one ended (build/mutations) as long as it is the same code that judges the same changes;
+where that one had come to the end, and for other code, it begins anew. Of places that differ in indices alone OF_EACH
+(4) are tried. A run fails on a change that goes unnoticed without a reason, on a reason that nothing needs, and on a
+share below the least.
 """
 
 from __future__ import annotations
 
+import hashlib
+import inspect
 import json
+import shutil
 import sys
 import time
 from collections import Counter
@@ -18,10 +24,12 @@ from pathlib import Path
 from random import Random
 from typing import Any, NamedTuple
 
+import mmgrasp as mg
 import plan_mutations
 import scenario_mutations
 from conftest import REPOSITORY
 from field_changes import Change, Harmless, all_changes, changed, explained, pattern
+from mmgrasp import _core
 
 FOLDER = REPOSITORY / "build" / "mutations"
 PAGE = REPOSITORY / "docs" / "methods" / "verify.md"
@@ -48,54 +56,142 @@ CASES = {
 TOGETHER, LEAST_TOGETHER = ("beside", "scenario"), 99.0
 """Cases whose changes are counted together, and the share of them that must be refused [%]."""
 Judge = Callable[[dict[str, Any]], dict[str, bool]]
+JUDGES = (plan_mutations.refused_early, plan_mutations.judge, scenario_mutations.tells)
+SAMPLES = 200  # base poses at each stop
 
 
-def documents(folder: Path) -> Iterator[tuple[str, dict[str, Any], Judge]]:
-    """What is changed, under its name, and which cases refuse it."""
-    kept = folder / "plan.json"
+class Document(NamedTuple):
+    name: str
+    content: dict[str, Any]
+    judge: Judge
+    """Which cases refuse a changed one."""
+
+
+def hashed(*contents: bytes) -> str:
+    found = hashlib.sha256()
+    for content in contents:
+        found.update(len(content).to_bytes(8, "big") + content)
+    return found.hexdigest()
+
+
+def package_files() -> list[Path]:
+    """What of mmgrasp answers: its modules and schemas, and all that is compiled of it."""
+    package, compiled = Path(mg.__file__).parent, Path(str(_core.__file__)).parent
+    return sorted({*package.rglob("*.py"), *package.rglob("*.schema.json"), *compiled.glob("*.so*")})
+
+
+def code_key() -> str:
+    """A hash of what judges: mmgrasp, and the functions here that ask it."""
+    files = [hashed(path.name.encode(), path.read_bytes()) for path in package_files()]
+    return hashed("".join(files).encode(), *(inspect.getsource(judge).encode() for judge in JUDGES))
+
+
+def changes_key(code: str, content: Any, changes: list[Change]) -> str:
+    """A hash of what is judged: by which code, which document, and which changes of it in which order."""
+    listed = [[change.field, change.kind] for change in changes]
+    return hashed(code.encode(), json.dumps(content).encode(), json.dumps(listed).encode())
+
+
+def kept_plan(folder: Path, code: str) -> tuple[dict[str, Any], Path]:
+    """The plan, made once by each code, and its scenario beside it."""
+    kept = folder / f"plan_{code[:16]}.json"
     if not kept.exists():
-        kept.write_text(json.dumps(plan_mutations.plan_and_scenario(folder)))
-    plan, expected = json.loads(kept.read_text())
-    alone = plan_mutations.refuses(None, 200)
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir(parents=True)
+        plan, _ = plan_mutations.plan_and_scenario(folder)
+        kept.write_text(json.dumps(plan))
+    return json.loads(kept.read_text()), folder / "scenario.yaml"
 
-    def of_plan(values: dict[str, Any]) -> dict[str, bool]:
-        by_itself = alone(values)
-        return {"alone": by_itself, "beside": by_itself or plan_mutations.differs(values, expected)}
 
-    yield "plan", plan, of_plan
+def documents(folder: Path) -> Iterator[Document]:
+    plan, beside = kept_plan(folder / "plan", code_key())
+    yield Document("plan", plan, plan_mutations.judge(beside, SAMPLES))
     scenario = scenario_mutations.whole_scenario()
-    told = scenario_mutations.tells(scenario, folder)
-    yield "scenario", scenario, lambda values: {"scenario": told(values)}
+    (folder / "scenario").mkdir(parents=True, exist_ok=True)
+    told = scenario_mutations.tells(scenario, folder / "scenario")
+    yield Document("scenario", scenario, lambda values: {"scenario": told(values)})
 
 
-def run(of_each: int, minutes: float) -> bool:
-    """Tries what was not tried yet; whether everything is."""
-    FOLDER.mkdir(parents=True, exist_ok=True)
-    is_whole = True
-    for name, document, judge in documents(FOLDER):
+class Answers:
+    """The answers about one document's changes, in a file that begins with the hash of what was judged."""
+
+    def __init__(self, document: Document, of_each: int) -> None:
+        self.document = document
+        changes = list(all_changes(document.content, of_each))
+        # What was tried so far is a fair sample of all.
+        self.changes = [changes[i] for i in Random(1).sample(range(len(changes)), len(changes))]
+        self.code = code_key()
+        self.key = changes_key(self.code, document.content, self.changes)
+        self.file = answers_file(document.name, of_each)
+        first, *rows = self.file.read_text().splitlines() if self.file.exists() else [""]
+        self.done = len(rows) if first and json.loads(first) == self.header else 0
+
+    @property
+    def header(self) -> dict[str, str]:
+        return {"code": self.code, "key": self.key}
+
+    @property
+    def is_whole(self) -> bool:
+        return self.done == len(self.changes)
+
+    def begin_anew(self) -> None:
+        document = self.document
+        assert not any(document.judge(document.content).values()), f"the {document.name} as it was made is refused"
+        self.file.parent.mkdir(parents=True, exist_ok=True)
+        self.file.write_text(json.dumps(self.header) + "\n")
+        self.done = 0
+
+    def go_on(self, minutes: float) -> int:
+        """Judges what was not judged yet; how many."""
+        if not self.done:
+            self.begin_anew()
         ends = time.monotonic() + 60 * minutes
-        answers = FOLDER / f"{name}_{of_each}.jsonl"
-        done = len(answers.read_text().splitlines()) if answers.exists() else 0
-        assert done or not any(judge(document).values()), f"the {name} as it was made is refused"
-        changes = list(all_changes(document, of_each))
-        order = Random(1).sample(range(len(changes)), len(changes))  # what was tried so far is a fair sample of all
-        with answers.open("a") as out:
-            for number in range(done, len(changes)):
+        judged = 0
+        with self.file.open("a") as out:
+            for change in self.changes[self.done :]:
                 if time.monotonic() > ends:
-                    print(f"{name}: {number} of {len(changes)} tried")
-                    is_whole = False
+                    print(f"{self.document.name}: {self.done} of {len(self.changes)} tried")
                     break
-                change = changes[order[number]]
-                refused = judge(changed(document, change.place, change.new))
+                refused = self.document.judge(changed(self.document.content, change.place, change.new))
                 out.write(json.dumps({"field": change.field, "kind": change.kind, **refused}) + "\n")
                 out.flush()
-    return is_whole
+                self.done += 1
+                judged += 1
+        return judged
+
+
+class Count(NamedTuple):
+    """Changed documents, each counted once, in however many cases it is judged."""
+
+    judged: int
+    kept: int
+    """Those of earlier runs of the same code."""
+    is_whole: bool
+
+    def __str__(self) -> str:
+        kept = f"{self.kept} more in earlier runs of this code"
+        return f"{self.judged} tries: changed documents judged now, each counted once; {kept}"
+
+
+def run(of_each: int, minutes: float) -> Count:
+    """Tries what was not tried yet by this code; all of it where there is nothing left."""
+    all_answers = [Answers(document, of_each) for document in documents(FOLDER)]
+    if all(answers.is_whole for answers in all_answers):
+        for answers in all_answers:
+            answers.begin_anew()
+    kept = sum(answers.done for answers in all_answers)
+    judged = sum(answers.go_on(minutes) for answers in all_answers)
+    return Count(judged, kept, all(answers.is_whole for answers in all_answers))
+
+
+def answers_file(name: str, of_each: int) -> Path:
+    return FOLDER / f"{name}_{of_each}.jsonl"
 
 
 def results(case: str, of_each: int) -> list[tuple[Change, bool]]:
     """Each change that was tried, and whether it was refused."""
-    file = FOLDER / f"{'scenario' if case == 'scenario' else 'plan'}_{of_each}.jsonl"
-    rows = [json.loads(line) for line in file.read_text().splitlines()] if file.exists() else []
+    file = answers_file("scenario" if case == "scenario" else "plan", of_each)
+    rows = [json.loads(line) for line in file.read_text().splitlines()[1:]] if file.exists() else []
     answer = "alone" if case == "stored" else case
     some = [r for r in rows if case not in ("alone", "stored") or (r["field"][0] == "scenario") == (case == "stored")]
     return [(Change(tuple(r["field"]), r["kind"], (), None), r[answer]) for r in some]
@@ -123,7 +219,8 @@ def faults(case: str, of_each: int, is_whole: bool) -> list[str]:
 
 
 def all_together(of_each: int) -> tuple[int, int]:
-    """How many of the changes of a plan and of a scenario, each beside the other, were refused, and how many there were."""
+    """How many of the changes of a plan and of a scenario, each beside the other, were refused, and how many there
+    were."""
     answers = [refused for case in TOGETHER for _, refused in results(case, of_each)]
     return sum(answers), len(answers)
 
@@ -156,26 +253,39 @@ def table(of_each: int) -> str:
     return "\n".join([*lines, "", *reasons])
 
 
+def is_old(of_each: int) -> bool:
+    """Whether answers are there of another code than today's."""
+    files = [answers_file(name, of_each) for name in ("plan", "scenario")]
+    headers = [json.loads(file.read_text().splitlines()[0]) for file in files if file.exists()]
+    return any(header.get("code") != code_key() for header in headers) or not headers
+
+
 def write(of_each: int) -> None:
     text = PAGE.read_text()
     before, rest = text.split(BEGIN)
     PAGE.write_text(f"{before}{BEGIN}\n\n{table(of_each)}\n\n{END}{rest.split(END)[1]}")
 
 
-def main() -> int:
-    words = [float(word) for word in sys.argv[1:] if word != "--write"]
-    of_each = int(words[0]) if words else 4
-    if "--write" in sys.argv:
-        write(of_each)
-        return 0
-    is_whole = run(of_each, words[1] if len(words) > 1 else 1e6)
-    print(table(of_each))
-    print(f"{sum(len(results(case, of_each)) for case in ('alone', 'stored', 'beside', 'scenario'))} tries")
+def all_faults(of_each: int, is_whole: bool) -> list[str]:
     wrong = [fault for case in CASES for fault in faults(case, of_each, is_whole and of_each >= ENOUGH)]
     refused, tried = all_together(of_each)
     if 100 * refused < LEAST_TOGETHER * tried:
         wrong.append(f"plan and scenario together: {refused} of {tried} refused, less than {LEAST_TOGETHER} %")
-    print("\n".join(wrong))
+    return wrong
+
+
+def main() -> int:
+    words = [float(word) for word in sys.argv[1:] if word != "--write"]
+    of_each = int(words[0]) if words else 4
+    if "--write" in sys.argv:
+        if is_old(of_each):
+            print("there are no answers of this code: run it first", file=sys.stderr)
+            return 2
+        write(of_each)
+        return 0
+    count = run(of_each, words[1] if len(words) > 1 else 1e6)
+    wrong = all_faults(of_each, count.is_whole)
+    print("\n".join([table(of_each), *wrong, f"{count}; {len(wrong)} complaints"]))
     return 1 if wrong else 0
 
 

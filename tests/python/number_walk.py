@@ -75,7 +75,8 @@ def is_number(annotation: str) -> bool:
 
 
 def numbers() -> list[tuple[Call, str, str]]:
-    """(call, parameter, annotation) of every number that the stubs show, but for methods that are there to be replaced."""
+    """(call, parameter, annotation) of every number that the stubs show, but for methods that are there to be
+    replaced."""
     ours = [call for call in CALLS if not call.function.startswith("NonlinearProblem.")]
     return [(call, p.name, p.annotation) for call in ours for p in call.parameters if is_number(p.annotation)]
 
@@ -196,26 +197,26 @@ def walk(some: list[Try]) -> dict[Try, str]:
 
 
 def complaint(one: Try, outcome: str) -> str | None:
-    """What is wrong about it, if anything."""
-    if outcome in ("refused", "interrupted"):
+    """What is wrong about it, if anything. Who goes on with a value until Ctrl-C has taken it, as who returns with
+    it."""
+    if outcome == "refused":
         return None
-    if outcome != "returned":
+    if outcome not in ("returned", "interrupted"):
         return outcome
-    if one.function.startswith(("verify.Checked", "verify.PlanToCheck")):
+    if outcome == "returned" and one.function.startswith(("verify.Checked", "verify.PlanToCheck")):
         return None  # wrong values in a plan are faults that the check reports
-    annotation = shown_at(one)[1].annotation
-    is_plain = re.fullmatch(r"(float|int)( \| None)?", annotation) is not None
-    if (
-        one.value in ("inf", "1e160")
-        and is_plain
-        and (one.parameter in UNBOUNDED or f"{one.function}.{one.parameter}" in UNBOUNDED)
-    ):
-        return None
-    if one.value in (*NEVER, "inf") and is_plain:
-        return f"took {one.value}"
+    how = "took" if outcome == "returned" else "went on, until Ctrl-C, with"
+    return f"{how} {one.value}" if never_taken(one) else None
+
+
+def never_taken(one: Try) -> bool:
+    """Whether the parameter must refuse the value: NaN always; what is no number, or beyond all bounds, where one
+    number is asked for."""
     if one.value == "nan":
-        return "took nan"
-    return None
+        return True
+    is_plain = re.fullmatch(r"(float|int)( \| None)?", shown_at(one)[1].annotation) is not None
+    is_unbounded = one.parameter in UNBOUNDED or f"{one.function}.{one.parameter}" in UNBOUNDED
+    return is_plain and one.value in (*NEVER, "inf") and not (is_unbounded and one.value in ("inf", "1e160"))
 
 
 def main(names: list[str]) -> int:

@@ -1,21 +1,27 @@
-"""Odd scenarios drawn at random, planned, and their plans checked: what `plan` calls solved its own `verify` never refuses.
+"""Odd scenarios drawn at random, planned, and their plans checked: what `plan` calls solved its own `verify` never
+refuses.
 
-As a script: `odd_scenarios.py [TRIES [SEED [FOLDER]]]` prints what each came to and keeps those that broke the rule. With `advice` as a last
-word each asks for more room than there is, and then for just what it was told there is. With `all` each uses many features at once
-(odd_features.py), and every third that is solved is taken in passing, too.
+A scenario that is refused is refused where it is read, at one of its lines; what is called infeasible is not solved
+with another seed; and what takes long says how far it is.
+
+As a script: `odd_scenarios.py [TRIES [SEED [FOLDER]]]` prints what each came to and keeps those that broke the rule.
+With `advice` as a last word each asks for more room than there is, and then for just what it was told there is. With
+`all` each uses many features at once (odd_features.py), and every third that is solved is taken in passing, too.
 """
 
 from __future__ import annotations
 
 import copy
 import faulthandler
+import os
 import re
 import shutil
 import sys
 import tempfile
+import threading
 import time
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from pathlib import Path
 from random import Random
 from typing import Any
@@ -23,6 +29,7 @@ from typing import Any
 import yaml
 
 import mmgrasp as mg
+from mmgrasp.scenario import Scenario
 from odd_features import full_scenario
 
 SCENARIOS = Path(mg.__file__).parent / "assets" / "scenarios"
@@ -30,6 +37,10 @@ FACTORS = [0.25, 0.5, 0.8, 0.95, 1.05, 1.25, 2.0, 4.0]
 SHIFTS = [-0.3, -0.1, -0.02, 0.02, 0.1, 0.3]
 # Numbers that odd values cannot make impossible at once: what they stand for decides how they are changed.
 TOUCHED = ("gripper", "place_region", "positioning_uncertainty", "obstacles", "part_types", "trays", "start", "goal")
+
+LONG, SILENT = 60.0, 2.0  # [s] of a work that should say how far it is, and between two words of it
+HANGS = 900.0  # [s]
+OTHER_SEEDS = (1000, 2000)
 
 
 def numbers(value: Any, path: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
@@ -86,27 +97,72 @@ def odd_full_scenario(seed: int, folder: Path) -> dict[str, Any]:
     return scenario
 
 
+class Watch:
+    """Hears progress, and knows how long nothing was heard."""
+
+    def __init__(self) -> None:
+        self.begun = self.last = time.monotonic()
+        self.longest = 0.0
+
+    def __call__(self, stage: str, fraction: float) -> None:
+        now = time.monotonic()
+        self.longest = max(self.longest, now - self.last)
+        self.last = now
+
+    def faults(self) -> list[str]:
+        """What somebody who waits would complain of: a long work that says nothing."""
+        self("", 1.0)
+        took = self.last - self.begun
+        is_slow = took > LONG and self.longest > SILENT
+        return [f"slow: {took:.0f} s, of which {self.longest:.0f} s without a word"] if is_slow else []
+
+
+def line_faults(error: mg.Error, path: Path) -> list[str]:
+    """A scenario is refused at one of its lines."""
+    is_there = re.search(rf"{re.escape(path.name)}:\d+: ", str(error))
+    return [] if is_there else [f"refused without the scenario's line: {error}"]
+
+
 def try_out(scenario: dict[str, Any], folder: Path, in_passing: bool = False) -> tuple[str, list[str]]:
-    """What became of it ("refused" or the outcome), and the faults of a plan that is called solved.
+    """What became of it ("refused" or the outcome), and what is wrong about that: faults of a plan that is called
+    solved, a message without the scenario's line, a work that is long and silent, a plan that is called impossible and
+    found with another seed.
 
     `in_passing`: the plan whose first picks are taken in passing is checked instead.
     """
     path = folder / "scenario.yaml"
     path.write_text(yaml.safe_dump(scenario, sort_keys=False))
+    watch = Watch()
     try:
-        plan = mg.plan_part_supply(path)
+        loaded = mg.load_scenario(path, progress=watch)
     except mg.Error as error:
-        assert str(error), "an error without a word"
-        return "refused", []
+        return "refused", line_faults(error, path)
+    try:
+        outcome, faults = planned(loaded, path, in_passing, watch)
+    except mg.Error as error:
+        return "refused late", [f"read, and refused afterwards: {error}"]
+    return outcome, faults + watch.faults()
+
+
+def planned(loaded: Scenario, path: Path, in_passing: bool, watch: Watch) -> tuple[str, list[str]]:
+    plan = mg.plan_part_supply(loaded, progress=watch)
     if plan.outcome != mg.Outcome.solved:
         assert str(plan), "no plan without a word"
-        return plan.outcome.name, []
+        return plan.outcome.name, found_after_all(loaded, watch) if plan.outcome == mg.Outcome.infeasible else []
+    folder = path.parent
     if in_passing:
-        mg.part_supply.plan_drive_by_picks(plan).save(folder)
+        mg.part_supply.plan_drive_by_picks(plan, progress=watch).save(folder)
     else:
         plan.save(folder / "plan.json")
-    verdict = mg.verify_plan(folder / "plan.json", scenario=path)
+    verdict = mg.verify_plan(folder / "plan.json", scenario=path, progress=watch)
     return "solved", [str(fault) for fault in verdict.faults]
+
+
+def found_after_all(loaded: Scenario, watch: Watch) -> list[str]:
+    """A plan that was called impossible must not be found with another seed."""
+    seeds = [loaded.options.get("seed", 1) + more for more in OTHER_SEEDS]
+    outcomes = {seed: mg.plan_part_supply(loaded, seed=seed, progress=watch).outcome for seed in seeds}
+    return [f"infeasible, and solved with seed {s}" for s, outcome in outcomes.items() if outcome == mg.Outcome.solved]
 
 
 ADVICE = re.compile(r"has a radius of ([0-9.]+) m, positioning_uncertainty is")
@@ -117,18 +173,35 @@ def follow_advice(scenario: dict[str, Any], folder: Path) -> tuple[str, list[str
     path = folder / "scenario.yaml"
     path.write_text(yaml.safe_dump({**scenario, "positioning_uncertainty": 0.9}, sort_keys=False))
     try:
-        plan = mg.plan_part_supply(path)
-    except mg.Error:
-        return "refused", []
+        loaded = mg.load_scenario(path)
+    except mg.Error as error:
+        return "refused", line_faults(error, path)
+    plan = mg.plan_part_supply(loaded)
     said = [float(found[1]) for o in plan.obstructions if (found := ADVICE.search(o.message))]
     if plan.outcome == mg.Outcome.solved or not said or len(said) < len(plan.obstructions):
         return "no advice", []
     outcome, faults = try_out({**scenario, "positioning_uncertainty": min(said)}, folder)
     if outcome == "solved":
         return outcome, faults
-    plan = mg.plan_part_supply(path)
-    again = [o.message for o in plan.obstructions if o.stage in ("region", "robustness")]
-    return outcome, again
+    again = [o.message for o in mg.plan_part_supply(path).obstructions if o.stage in ("region", "robustness")]
+    return outcome, faults + again
+
+
+def one(number: int, folder: Path, words: Collection[str]) -> tuple[str, list[str]]:
+    """What came of one odd scenario, with a mistake of the programs told as a fault."""
+    try:
+        if "all" in words:
+            return try_out(odd_full_scenario(number, folder), folder, in_passing=number % 3 == 0)
+        return (follow_advice if "advice" in words else try_out)(odd_scenario(number), folder)
+    except Exception as error:  # what the search is for
+        return type(error).__name__, [str(error)]
+
+
+def give_up(made: int, number: int) -> None:
+    """Ends a search that hangs, with what was tried until then."""
+    print(f"{number}: no end after {HANGS:.0f} s\n{made} tries: the last one hangs", flush=True)
+    faulthandler.dump_traceback()
+    os._exit(1)
 
 
 def main() -> int:
@@ -140,26 +213,18 @@ def main() -> int:
     outcomes: Counter[str] = Counter()
     broken = 0
     for number in range(seed, seed + tries):
-        faulthandler.dump_traceback_later(900, exit=True)  # a hang
-        begun = time.monotonic()
+        faulthandler.dump_traceback_later(HANGS + 60, exit=True)  # where Python itself stands
+        hang = threading.Timer(HANGS, give_up, (number - seed + 1, number))
+        hang.daemon = True
+        hang.start()
         with tempfile.TemporaryDirectory() as name:
-            folder = Path(name)
-            try:
-                if "all" in sys.argv:
-                    scenario = odd_full_scenario(number, folder)
-                    outcome, faults = try_out(scenario, folder, in_passing=number % 3 == 0)
-                else:
-                    scenario = odd_scenario(number)
-                    outcome, faults = (follow_advice if "advice" in sys.argv else try_out)(scenario, folder)
-            except Exception as error:  # what the search is for
-                outcome, faults = type(error).__name__, [str(error)]
+            outcome, faults = one(number, Path(name), sys.argv)
             outcomes[outcome] += 1
-            took = time.monotonic() - begun
-            if faults or took > 60:
-                print(f"{number}: {outcome} after {took:.0f} s; {len(faults)} faults: {faults[:3]}", flush=True)
             if faults:
+                print(f"{number}: {outcome}; {len(faults)} faults: {faults[:3]}", flush=True)
                 broken += 1
-                shutil.copytree(folder, kept / f"odd_{number}", dirs_exist_ok=True)
+                shutil.copytree(name, kept / f"odd_{number}", dirs_exist_ok=True)
+        hang.cancel()
     faulthandler.cancel_dump_traceback_later()
     print(f"{tries} tries from seed {seed}: {dict(outcomes)}; {broken} broke the rule ({kept})")
     return 1 if broken else 0

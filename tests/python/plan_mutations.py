@@ -1,4 +1,5 @@
-"""Every field of a plan changed in every way: what `verify` does not refuse. (`mutation_shares.py` tries all of them.)"""
+"""Every field of a plan changed in every way: what `verify` does not refuse. (`mutation_shares.py` tries all of
+them.)"""
 
 from __future__ import annotations
 
@@ -16,8 +17,6 @@ from mmgrasp.documents.reading import Document
 from mmgrasp.part_supply.consistency import check_consistency
 from mmgrasp.part_supply.plan_file import check_form
 from mmgrasp.part_supply.plan_reader import plan_to_check
-from mmgrasp.part_supply.plan_writer import scenario_to_dict
-from mmgrasp.part_supply.verification import differences
 
 HARMLESS: Harmless = {
     "scenario.name": ("misspelt, other", "a title"),
@@ -54,41 +53,46 @@ ARRIVALS = [[4e-4, 1e-4, 0.0], [1e-4, 4e-4, 0.0], [0.0, 0.0, 3e-4]]
 """A covariance of arrivals for the plan, so that what is counted of them is changed, too."""
 
 
-def differs(plan: dict[str, Any], expected: dict[str, Any]) -> bool:
-    """Whether `verify --scenario` tells the plan's scenario from the file's."""
-    return bool(differences(plan.get("scenario"), expected))
-
-
-def refuses(expected: dict[str, Any] | None, samples: int = 60) -> Callable[[dict[str, Any]], bool]:
-    """Verify's answer, beside a scenario or (None) without one; the quick rules first, the samples of regions last."""
-
-    def refused(plan: dict[str, Any]) -> bool:
-        try:
-            if expected is not None and differs(plan, expected):
-                return True
-            root = Document("plan", plan, {}).root
-            check_form(root)
-            if plan["outcome"] != "solved":
-                return True
-            to_check = plan_to_check(root)
-            if check_consistency(plan):
-                return True
-        except mg.Error:
+def refused_early(plan: dict[str, Any], samples: int) -> bool:
+    """Some of what verify_plan asks, the quick rules first and without the samples of regions: what is refused here it
+    refuses, too. Most changes end here. (verify_plan goes through all its rules whatever the first ones say: 75 s
+    instead of 28 s for 150 changes.)"""
+    try:
+        root = Document("plan", plan, {}).root
+        check_form(root)
+        if plan["outcome"] != "solved":
             return True
-        return any(
-            checks.check_plan(to_check, samples=samples, region_samples=regions, threads=1).faults for regions in (0, 5)
-        )
+        to_check = plan_to_check(root)
+        if check_consistency(plan):
+            return True
+    except mg.Error:
+        return True
+    return bool(checks.check_plan(to_check, samples=samples, region_samples=0, threads=1).faults)
 
-    return refused
+
+def judge(scenario: Path, samples: int = 60) -> Callable[[dict[str, Any]], dict[str, bool]]:
+    """Whether `verify` refuses a plan alone, and beside this scenario; that it does not is said by verify_plan
+    itself."""
+
+    def judged(plan: dict[str, Any]) -> dict[str, bool]:
+        if refused_early(plan, samples):
+            return {"alone": True, "beside": True}
+        try:
+            found = mg.verify_plan(plan, scenario=scenario, samples=samples, region_samples=5, threads=1).faults
+        except mg.Error:
+            return {"alone": True, "beside": True}
+        return {"alone": any(fault.code != "scenario-changed" for fault in found), "beside": bool(found)}
+
+    return judged
 
 
-def plan_and_scenario(folder: Path) -> tuple[dict[str, Any], dict[str, Any]]:
-    """A plan of three trays and two stops, both reached in passing, and the scenario it is compared with."""
+def plan_and_scenario(folder: Path) -> tuple[dict[str, Any], Path]:
+    """A plan of three trays and two stops, both reached in passing, and the scenario it was made for, a file in the
+    folder."""
     scenario = yaml.safe_load((ASSETS / "scenarios" / "storeroom.yaml").read_text())
     scenario["trays"] = [{**scenario["trays"][i], "targets": scenario["trays"][i]["targets"][:1]} for i in (0, 1, 3)]
     scenario["reach"] = {"samples": 500_000}
     scenario["arrival_covariance"] = ARRIVALS
     path = folder / "scenario.yaml"
     path.write_text(yaml.safe_dump(scenario, sort_keys=False))
-    plan = mg.part_supply.plan_drive_by_picks(mg.plan_part_supply(path)).plan_to_dict()
-    return plan, scenario_to_dict(mg.load_scenario(path))
+    return mg.part_supply.plan_drive_by_picks(mg.plan_part_supply(path)).plan_to_dict(), path

@@ -20,6 +20,7 @@ MG: Any = mg
     ("call", "message"),
     [
         (lambda: WORLD.add_box(3, [1, 1, 1]), "add_box: name = 3: must be a text (str)"),
+        (lambda: WORLD.add_box("\udcff", [1, 1, 1]), r"add_box: name = '\udcff': holds half a character"),
         (lambda: WORLD.add_box("a"), "add_box: size is missing: must be an array"),
         (lambda: WORLD.add_box("a", [1, 1, 1], size=2), "add_box: size is given twice"),
         (lambda: WORLD.add_box("a", [1, 1, 1], None, 3), "add_box: takes 3 arguments by place (name, size, pose), got 4"),

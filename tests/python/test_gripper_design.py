@@ -13,6 +13,7 @@ import pytest
 import mmgrasp as mg
 from mmgrasp.gripper_design import Gripper, GripperActuator, SegmentRequirement, minimal_grippers
 from mmgrasp.reproduce.gripper_sets import ACTUATORS, every_set, requirements
+from mmgrasp.viz.gripper_pictures import gripper_bodies
 
 JAWS = GripperActuator("jaws", 0.01)
 
@@ -70,6 +71,16 @@ def test_files_of_a_gripper_are_a_robot(tmp_path: Path) -> None:
     mesh = mg.Mesh.load(tmp_path / "deep/centric/finger.stl")
     assert mesh.closed
     assert np.asarray(mesh.vertices)[:, 2].max() == pytest.approx(0.05)
+
+
+def test_the_drawn_palm_is_as_wide_as_the_built_one(tmp_path: Path) -> None:
+    gripper = Gripper(name="wide", fingers=3, min_opening=0.01, max_opening=0.05, finger_width=0.02)
+    gripper.to_urdf(tmp_path)
+    palm = mg.Robot.load(tmp_path / "gripper.urdf").collisions("base")[0].shape
+    assert isinstance(palm, mg.Cylinder)
+    vertices = gripper_bodies(gripper, 0.03, np.eye(4))[-1][0]
+    assert np.linalg.norm(vertices[:, :2], axis=1) == pytest.approx(palm.radius)
+    assert vertices[:, 2].max() == pytest.approx(-gripper.finger_length)
 
 
 def test_mistakes_are_named(tmp_path: Path) -> None:

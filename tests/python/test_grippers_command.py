@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import base64
+import html
 import json
 import re
 from collections.abc import Callable
 from dataclasses import replace
+from fnmatch import fnmatch
 from pathlib import Path
 from typing import Any
 
@@ -17,10 +20,15 @@ import mmgrasp as mg
 from mmgrasp.cli import main
 from mmgrasp.grippers import load_assembly, plan_grippers
 from mmgrasp.grippers.assembly_file import shipped_assembly
-from mmgrasp.grippers.output import result_to_dict
-from mmgrasp.grippers.planning import GripperPlan, operation_of
+from mmgrasp.grippers.output import GRIPPER_FILES, result_to_dict
+from mmgrasp.grippers.planning import FINGERS_OF, GripperPlan, operation_of
 from mmgrasp.grippers.turned_parts import block, turned
+from mmgrasp.reproduce import segmentation
+from mmgrasp.viz.gripper_pictures import SIDE, operation_bodies, write_gripper_pictures
 from mmgrasp.viz.gripper_report import gripper_report_html
+from mmgrasp.viz.png import write_png
+from mmgrasp.viz.segment_pictures import segment_picture
+from mmgrasp.viz.two_sides import FROM_ABOVE_AND_ASIDE, two_sides
 from test_segment_command import write_stl
 from test_segment_mesh import as_mesh
 
@@ -144,6 +152,92 @@ def test_what_would_help_is_a_longer_finger_or_another_stroke(
     )
     assert found and "wider than any actuator opens" in narrow
     said(0, actuators=[{**chuck, "stroke": float(found[1]), "max_opening": float(found[2])}])
+
+
+def test_fixtures_are_there_all_the_time(tmp_path: Path) -> None:
+    """A part that no operation moves is one as soon as any operation has things put onto it; others are in nobody's way, which is told."""
+    order: list[dict[str, Any]] = [{"part": "sleeve"}, {"part": "shaft", "onto": ["base"]}, {"part": "cap"}]
+    read = load_assembly(changed(tmp_path, order=order))
+    assert [step.passive for step in read.steps] == [["base"], ["base"], ["base", "sleeve", "shaft"]]
+    order[1]["onto"] = ["sleeve"]
+    read = load_assembly(changed(tmp_path, order=order))
+    assert [step.passive for step in read.steps] == [[], ["sleeve"], ["sleeve", "shaft"]]
+    alone = load_assembly(changed(tmp_path, order=[{"part": "key", "onto": ["base"], "from": {"xyz": [0, 0, 80]}}]))
+    notes = [f"{name}: no operation moves it, and none has it in onto: it is in nobody's way" for name in alone.parts]
+    plan = plan_grippers(alone)
+    assert plan.solved and plan.notes == [note for note in notes if note.split(":")[0] not in ("key", "base")]
+
+
+def test_assemblies_and_segments_have_one_rule_for_sizes(
+    tmp_path: Path, block_file: Callable[..., Path], capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The block is 37.4 mm from corner to corner; a mesh in inches is as large as one in metres."""
+    diagonal = float(np.linalg.norm([0.03, 0.02, 0.01]))
+    for size, is_taken in ((0.00101, True), (0.00099, False), (2.99, True), (3.01, False)):
+        file = block_file(scale=1000 * size / diagonal)
+        if is_taken:
+            load_assembly(file)
+            continue
+        assert main(["segment", str(tmp_path / "block.stl"), "--unit", "mm"]) == 2
+        rule = "a part for a gripper is from 0.001 m to 3 m: is "
+        assert rule in " ".join(capsys.readouterr().err.split())
+        with pytest.raises(mg.InvalidInput, match=rule):
+            load_assembly(file)
+    inches = block_file(scale=1 / 0.0254)
+    inches.write_text(inches.read_text().replace("unit: mm", "unit: inch").replace("120", "4.7").replace("80", "3"))
+    vertices = np.asarray(load_assembly(inches).parts["block"].mesh.vertices)
+    assert np.ptp(vertices, axis=0) == pytest.approx([0.03, 0.02, 0.01], abs=1e-8)
+
+
+def test_fingers_by_kind_are_those_of_the_library(tang_file: Callable[..., Path], pulley: GripperPlan) -> None:
+    """The rule of 5.2.1 is written in C++ and, for the reproduction, in Python."""
+    fates = [fate for plan in (pulley, plan_grippers(load_assembly(tang_file()))) for fate in plan.fates]
+    assert {fate.kind for fate in fates} >= set(FINGERS_OF)
+    assert {fate.fingers for fate in fates} >= set(FINGERS_OF.values())
+    for fate in fates:
+        assert fate.fingers == FINGERS_OF.get(fate.kind, 0)
+    assert segmentation.KIND == {fingers: kind for kind, fingers in FINGERS_OF.items()}
+
+
+def captioned(page: str) -> dict[str, bytes]:
+    """Pictures of a report by what stands under them."""
+    found = re.findall(r'src="data:image/png;base64,([^"]*)"><figcaption>(.*?)</figcaption>', page)
+    assert len({caption for _, caption in found}) == len(found)
+    return {html.unescape(caption): base64.b64decode(data) for data, caption in found}
+
+
+def test_names_that_look_alike_in_files_have_pictures_of_their_own(tmp_path: Path) -> None:
+    """Blocks of which only letters and digits would be told apart, or none at all."""
+    names = ["a b", "a_b", "Ä", "夹具", "x" * 200, "x" * 199 + "y"]
+    content: dict[str, Any] = {
+        "format": "mmgrasp-assembly",
+        "version": 1,
+        "name": "blocks",
+        "unit": "mm",
+        "parts": [{"name": "plate", "box": [900, 120, 10], "pose": {"xyz": [0, 0, -5]}}],
+        "order": [{"part": name, "onto": ["plate"], "from": {"xyz": [0, 0, 80]}} for name in names],
+        "actuators": [{"name": "jaws", "fingers": 2, "stroke": 48}],
+    }
+    for i, name in enumerate(names):
+        pose = {"xyz": [120 * i - 300, 0, 10]}
+        content["parts"].append({"name": name, "box": [16 + 2 * i, 20 + 2 * i, 20], "pose": pose})
+    file = tmp_path / "assembly.yaml"
+    file.write_text(yaml.safe_dump(content, allow_unicode=True))
+    plan = plan_grippers(load_assembly(file))
+    assert plan.solved
+    paths = write_gripper_pictures(plan, tmp_path, lambda what, share: None)
+    assert len(set(paths)) == len({path.name.lower() for path in paths}) == 2 * len(names)
+    assert all(path.read_bytes().startswith(b"\x89PNG") and len(path.name) < 100 for path in paths)
+    assert all(any(fnmatch(path.name, known) for known in GRIPPER_FILES) for path in paths)
+    shown = captioned(gripper_report_html(plan, tmp_path))
+    assert list(shown) == [*names, *(f"Segments of {name}" for name in names)]
+    for i, name in enumerate(names):
+        mesh, labels = plan.assembly.parts[name].mesh, np.asarray(plan.segmentations[name].labels)
+        image = segment_picture(mesh.vertices, np.asarray(mesh.triangles), labels, plan.segment_names[name], SIDE)
+        assert shown[f"Segments of {name}"] == write_png(tmp_path / "own.png", image).read_bytes()
+        image = two_sides(operation_bodies(plan, i), FROM_ABOVE_AND_ASIDE, SIDE)
+        assert shown[name] == write_png(tmp_path / "own.png", image).read_bytes()
+    assert len(set(shown.values())) == len(shown)
 
 
 def test_parts_that_stand_in_each_other_are_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -376,13 +470,20 @@ def test_wrong_names_of_segments_are_told_at_their_line(
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"unit": "m"}, "is another unit meant?"),
-        ({"unit": "inch"}, "unit = 'inch'"),
+        (
+            {"unit": "m"},
+            "is 170 m from corner to corner with unit: m; a part for a gripper is from 0.001 m to 3 m: is mm meant?",
+        ),
+        ({"unit": "feet"}, "unit = 'feet'"),
         ({"parts": []}, "is no part"),
         ({"order": []}, "must not be empty"),
         ({"order": [{"part": "shaft"}, {"part": "shaft"}]}, "an order names a part once"),
         ({"order": [{"part": "shafts"}]}, "did you mean shaft"),
         ({"order": [{"part": "shaft", "onto": ["shaft"]}]}, "cannot be moved and stay"),
+        (
+            {"order": [{"part": "base"}, {"part": "shaft", "onto": ["base", "cap"]}, {"parts": ["key", "cap"]}]},
+            "order[1].onto[1] = 'cap': is brought to its place only later, by order[2]",
+        ),
         ({"actuators": []}, "must not be empty"),
         ({"actuators": [{"name": "a", "fingers": 4, "stroke": 8}]}, "must be 2 or 3"),
         ({"fingers": {"longest": 5, "shortest": 10}}, "must be at least shortest"),

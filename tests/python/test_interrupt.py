@@ -163,3 +163,17 @@ def test_a_check_of_a_plan_can_be_interrupted(delay: float, small_plan_dict: dic
     with pytest.raises(KeyboardInterrupt):
         mg.verify_plan(small_plan_dict, samples=1_000_000, required_rate=1e-6, region_samples=100_000)
     timer.join()
+
+
+def test_a_long_set_cover_tells_that_it_goes_on() -> None:
+    heard: list[float] = []
+
+    def progress(stage: str, fraction: float) -> None:
+        assert stage == "set cover"
+        heard.append(fraction)
+        if len(heard) == 3:
+            raise RuntimeError("enough")
+
+    with pytest.raises(RuntimeError, match="enough"):
+        mg.optim.solve_set_cover(300, HARD_COVER, time_limit=1000, progress=progress)
+    assert heard == sorted(heard)

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import time
+import types
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-from odd_scenarios import odd_full_scenario, odd_scenario, try_out
+import mmgrasp as mg
+from odd_scenarios import Watch, odd_full_scenario, odd_scenario, one, try_out
 
 # The first 561 were tried. These were called solved and refused by their own check:
 BROKE = {
@@ -53,3 +58,74 @@ def test_solved_plans_with_every_feature_hold(seed: int, tmp_path: Path) -> None
     outcome, faults = try_out(scenario, tmp_path, in_passing=seed % 3 == 0)
     assert faults == []
     assert outcome == BROKE_WITH_ALL.get(seed, outcome)
+
+
+def refusing(message: str) -> Callable[..., Any]:
+    def refuse(*arguments: Any, **keywords: Any) -> Any:
+        raise mg.InvalidInput(message)
+
+    return refuse
+
+
+def read_at_once(path: Path, **keywords: Any) -> Any:
+    return types.SimpleNamespace(options={"seed": 7})
+
+
+def outcomes_by_seed(outcomes: dict[int | None, mg.Outcome]) -> Callable[..., Any]:
+    def plan(scenario: Any, seed: int | None = None, **keywords: Any) -> Any:
+        return types.SimpleNamespace(outcome=outcomes.get(seed, mg.Outcome.infeasible))
+
+    return plan
+
+
+def test_a_refusal_names_a_line_of_the_scenario(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(mg, "load_scenario", refusing("scenario.yaml:7: trays[0].size: must be > 0"))
+    assert try_out({}, tmp_path) == ("refused", [])
+    monkeypatch.setattr(mg, "load_scenario", refusing("trays[0].size: must be > 0"))
+    outcome, faults = try_out({}, tmp_path)
+    assert outcome == "refused" and "without the scenario's line" in faults[0]
+
+
+def test_a_late_refusal_is_a_fault(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(mg, "load_scenario", read_at_once)
+    monkeypatch.setattr(mg, "plan_part_supply", refusing("scenario.yaml:7: trays[0].size: must be > 0"))
+    assert try_out({}, tmp_path)[0] == "refused late"
+    assert try_out({}, tmp_path)[1]
+
+
+@pytest.mark.parametrize(("other", "faults"), [
+    ({}, []),
+    ({1007: mg.Outcome.not_found}, []),
+    ({2007: mg.Outcome.solved}, ["infeasible, and solved with seed 2007"]),
+])  # fmt: skip
+def test_what_is_infeasible_is_not_solved_with_another_seed(
+    other: dict[int | None, mg.Outcome], faults: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(mg, "load_scenario", read_at_once)
+    monkeypatch.setattr(mg, "plan_part_supply", outcomes_by_seed(other))
+    assert try_out({}, tmp_path) == ("infeasible", faults)
+
+
+@pytest.mark.parametrize(("moments", "is_slow"), [
+    ([0, 59], False),
+    ([0, 61], True),
+    ([*range(0, 100, 2)], False),
+    ([*range(0, 100, 2), 103], True),
+])  # fmt: skip
+def test_a_long_work_that_says_nothing_is_a_fault(
+    moments: list[int], is_slow: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    clock = iter([*moments, moments[-1]])
+    monkeypatch.setattr(time, "monotonic", lambda: float(next(clock)))
+    watch = Watch()
+    for _ in moments[1:]:
+        watch("planning", 0.5)
+    assert bool(watch.faults()) is is_slow
+
+
+def test_a_mistake_of_the_programs_is_a_fault(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(*arguments: Any, **keywords: Any) -> None:
+        raise KeyError("x")
+
+    monkeypatch.setattr(mg, "load_scenario", broken)
+    assert one(1, tmp_path, []) == ("KeyError", ["'x'"])

@@ -1,4 +1,4 @@
-"""Commands that write single files replace nothing but an earlier result of the same kind."""
+"""Commands that write single files replace nothing that is there, `reproduce` nothing but its own pages."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 import mmgrasp as mg
+from mmgrasp._files import PNG
 from mmgrasp.cli import main
 
 # Each command that writes single files, with what it must not replace, whose name stands in {}.
@@ -17,11 +18,18 @@ FOREIGN = [
     ("part.xacro", ["check", "r.urdf", "--write-srdf", "{}"]),
     ("plan.json", ["view", "plan.json", "--png", "{}"]),
     ("plan.json", ["view", "plan.json", "--film", "{}"]),
+    ("photo.png", ["view", "plan.json", "--png", "{}"]),
+    ("film.gif", ["view", "plan.json", "--film", "{}"]),
+    ("grasps.json", ["grasp", "MAP", "--gripper", "asset:scenarios/storeroom.yaml", "-o", "{}"]),
+    ("photo.png", ["grasp", "MAP", "--gripper", "asset:scenarios/storeroom.yaml", "--png", "{}"]),
     ("mine.yaml", ["init", "r.urdf", "-o", "{}"]),
     ("out/reproduction.md", ["reproduce", "p1-table-3.4", "--quick", "--out", "out"]),
     ("out/reproduction/p1-table-3.4.json", ["reproduce", "p1-table-3.4", "--quick", "--out", "out"]),
     ("out/reproduction/p1-table-3.4.png", ["reproduce", "p1-table-3.4", "--quick", "--out", "out"]),
 ]
+
+
+MINE = {".png": PNG + b"mine", ".gif": b"GIF89a mine", ".json": b'{\n "format": "mmgrasp-grasps",\n "by hand": 1\n}\n'}
 
 
 @pytest.mark.parametrize(("name", "command"), FOREIGN)
@@ -39,7 +47,7 @@ def test_no_command_replaces_what_is_not_its_own(
     foreign = tmp_path / name.replace("objects", "MAP/objects").replace("map.sdf", "MAP/map.sdf")
     foreign.parent.mkdir(parents=True, exist_ok=True)
     if name != "plan.json":
-        foreign.write_text("mine")
+        foreign.write_bytes(MINE.get(Path(name).suffix, b"mine") if "/" not in name else b"mine")
     before = {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
     assert main([word.format(foreign) for word in command]) == 2
     assert "is not replaced" in capsys.readouterr().err

@@ -14,8 +14,7 @@ import pytest
 import mmgrasp as mg
 import plan_mutations
 import scenario_mutations
-from field_changes import Result, at, explained, pattern, try_out
-from mmgrasp.part_supply.plan_writer import scenario_to_dict
+from field_changes import Result, all_changes, at, changed, explained, pattern, try_out
 
 
 def unexplained(result: Result, harmless: Any) -> list[tuple[Any, str]]:
@@ -26,9 +25,11 @@ def unexplained(result: Result, harmless: Any) -> list[tuple[Any, str]]:
 def test_changes_of_a_plan_are_refused(small: dict[str, Any], write: Any, every: int) -> None:
     path = write({**small, "arrival_covariance": plan_mutations.ARRIVALS})
     plan = mg.part_supply.plan_drive_by_picks(mg.plan_part_supply(path)).plan_to_dict()
-    refused = plan_mutations.refuses(scenario_to_dict(mg.load_scenario(path)))
-    assert not refused(plan)
-    result = try_out(plan, refused, of_each=4, every=every)  # several places of each pattern
+    judged = plan_mutations.judge(path)
+    assert judged(plan) == {"alone": False, "beside": False}
+    result = try_out(
+        plan, lambda values: judged(values)["beside"], of_each=4, every=every
+    )  # several places of each pattern
     assert result.tried > 4250 / every
     assert not unexplained(result, plan_mutations.HARMLESS)
     assert len(result.left) <= 0.05 * result.tried + 2  # of all: below 1 %
@@ -40,6 +41,26 @@ def test_changes_of_a_plan_are_refused(small: dict[str, Any], write: Any, every:
             assert at(plan, change.field[:4])["kind"] == "retreat", change
         if pattern(change.field) == "picks[].motions[].accelerations[][]" and change.kind in ("sign", "doubled"):
             assert abs(at(plan, change.field)) <= 0.01 * limits[int(change.field[6])], change
+
+
+@pytest.mark.parametrize("every", [1000, pytest.param(150, marks=pytest.mark.slow)])
+def test_the_judge_says_what_verify_says(small_plan_dict: dict[str, Any], small_path: Path, every: int) -> None:
+    """The early refusals are a short cut only, and a scenario that changed is nothing that the plan itself says."""
+    judged = plan_mutations.judge(small_path)
+    renamed = {**small_plan_dict, "scenario": {**small_plan_dict["scenario"], "positioning_uncertainty": 0.099}}
+    assert judged(small_plan_dict) == {"alone": False, "beside": False}
+    assert judged(renamed)["beside"]
+    changes = list(all_changes(small_plan_dict, of_each=1))[::every]
+    early = [c for c in changes if plan_mutations.refused_early(changed(small_plan_dict, c.place, c.new), 60)]
+    assert len(early) >= 1500 / every
+    assert [c for c in early if not refused_by_verify(changed(small_plan_dict, c.place, c.new), small_path)] == []
+
+
+def refused_by_verify(plan: dict[str, Any], scenario: Path) -> bool:
+    try:
+        return bool(mg.verify_plan(plan, scenario=scenario, samples=60, region_samples=0, threads=1).faults)
+    except mg.Error:
+        return True
 
 
 @pytest.mark.parametrize("every", [70, pytest.param(7, marks=pytest.mark.slow)])

@@ -37,7 +37,7 @@ def widths_offered(
     mesh: mg.Mesh, found: mg.grasping.MeshSegmentation
 ) -> list[tuple[mg.grasping.MeshSegment, list[float]]]:
     """Each segment with the widths of its primitive [mm]."""
-    fits = mg.grasping.fit_primitives(mesh, found.labels)
+    fits = mg.grasping.fit_primitives(mesh, found.labels, threads=found.threads)
     return [(segment, [1e3 * w.width for w in fit.widths]) for segment, fit in zip(found.segments, fits, strict=True)]
 
 
@@ -96,7 +96,9 @@ def test_widths_of_composed_parts(tmp_path: Path) -> None:
         rng = np.random.default_rng((11, seed))
         part = stepped_shaft(rng, bore=seed % 2 == 1, fillets=False, threaded=False)
         mesh, truth, found = segmented(part, 0.0, seed, tmp_path)
-        for segment, fit in zip(found.segments, mg.grasping.fit_primitives(mesh, found.labels), strict=True):
+        for segment, fit in zip(
+            found.segments, mg.grasping.fit_primitives(mesh, found.labels, threads=found.threads), strict=True
+        ):
             (true,) = part.widths[np.bincount(truth[segment.faces]).argmax()]
             assert fit.kind == "cylinder"
             assert [1e3 * w.width for w in fit.widths] == pytest.approx([true], abs=0.1)
@@ -141,7 +143,7 @@ def test_pegs(name: str) -> None:
     scale, diameters = REAL[name]
     mesh = mg.Mesh.load(path, scale=scale)
     found = mg.grasping.segment_mesh(mesh)
-    fits = mg.grasping.fit_primitives(mesh, found.labels)
+    fits = mg.grasping.fit_primitives(mesh, found.labels, threads=found.threads)
     got = sorted(1e3 * w.width for f in fits if f.kind == "cylinder" for w in f.widths)
     assert got == pytest.approx(diameters, abs=0.1)
 

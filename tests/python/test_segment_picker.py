@@ -140,3 +140,46 @@ def test_the_lines_of_two_clicks_are_read_as_keep_off(plan: GripperPlan, tmp_pat
     assert {
         name: [n for k in part.keep_off for n in k.names] for name, part in read.parts.items() if part.keep_off
     } == chosen
+
+
+@pytest.mark.parametrize("unit", ["mm", "inch"])
+def test_the_lines_keep_boxes_that_the_file_has(tmp_path: Path, unit: str) -> None:
+    """Pasted over what the file has, nothing that was forbidden may be touched."""
+    content = yaml.safe_load(shipped_assembly("pulley").read_text())
+    scale = {"mm": 1.0, "inch": 1 / 25.4}[unit]
+    tilted = {"xyz": [scale * 1e-5, -scale * 2, scale * 22], "rpy": [0.1, -0.2, 3.0]}
+    boxes: list[Any] = [{"box": [scale * 70, scale * 70, scale * 4], "pose": tilted}, {"box": [scale * 5] * 3}]
+    given = {"pulley": [1, *boxes], "sleeve": boxes[:1], "shaft": [0]}
+    content["unit"] = unit
+    for part in content["parts"]:
+        for key in ("box", "turned"):
+            if key in part:
+                part[key] = (scale * np.array(part[key])).tolist()
+        if "pose" in part:
+            part["pose"]["xyz"] = (scale * np.array(part["pose"]["xyz"])).tolist()
+        if part["name"] in given:
+            part["keep_off"] = given[part["name"]]
+    content.pop("fingers")
+    content["order"] = [{"part": name} for name in ("base", "shaft", "sleeve", "pulley")]
+    file = tmp_path / "assembly.yaml"
+    file.write_text(yaml.safe_dump(content))
+    before = plan_grippers(load_assembly(file))
+    script = f"""
+        const p = require({json.dumps(str(SCRIPT))});
+        const parts = {json.dumps(picker_data(before))}.map(p.readPart);
+        p.toggle(parts.find(part => part.name === 'pulley'), 0); p.toggle(parts.find(part => part.name === 'shaft'), 0);
+        console.log(p.yamlLines(parts));"""
+    pasted = {part["name"]: part["keep_off"] for part in yaml.safe_load("parts:\n" + node(script))["parts"]}
+    assert set(pasted) == set(given) and pasted["shaft"] == []
+    for part in content["parts"]:
+        part.update({"keep_off": pasted[part["name"]]} if part["name"] in pasted else {})
+    file.write_text(yaml.safe_dump(content))
+    after = load_assembly(file).parts
+    assert [n for k in after["pulley"].keep_off for n in k.names] == before.segment_names["pulley"][:2]
+    assert after["shaft"].keep_off == []
+    for name in given:
+        old = [box for k in before.assembly.parts[name].keep_off for box in k.boxes]
+        new = [box for k in after[name].keep_off for box in k.boxes]
+        assert len(old) == len(new) == sum(isinstance(k, dict) for k in given[name])
+        for (T, size), (T_new, size_new) in zip(old, new, strict=True):
+            assert T_new == pytest.approx(T, abs=1e-10) and size_new == pytest.approx(size, abs=1e-12)

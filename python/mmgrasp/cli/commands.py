@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Console
 
 from .._core import Error, InvalidInput, Outcome
-from .._files import GIF, PNG, check_file, check_folder, check_new_file, printable, temporary_room, write_file
+from .._files import check_folder, check_new_file, printable, temporary_room, write_file
 from ..documents.reading import Document
 from ..part_supply import (
     ScenarioPlan,
@@ -158,9 +158,8 @@ def run_view(arguments: argparse.Namespace, console: Console) -> int:
     if content["outcome"] == "solved":
         plan_to_check(root)
     wanted = [file for file in (arguments.png, arguments.film) if file is not None]
-    for file, begins in ((arguments.png, PNG), (arguments.film, GIF)):
-        if file is not None:
-            check_file(file, begins)
+    for file in wanted:
+        check_new_file(file)
     if len(wanted) == 2 and os.path.realpath(wanted[0]) == os.path.realpath(wanted[1]):
         raise InvalidInput(f"--png and --film: {printable(str(wanted[0]))} cannot be both")
     if arguments.png is not None:

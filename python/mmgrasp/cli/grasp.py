@@ -14,7 +14,7 @@ from rich.table import Table
 
 from .. import _core
 from .._core import InvalidInput, IoError, Outcome
-from .._files import PNG, check_file, printable, write_result
+from .._files import check_new_file, printable, write_result
 from ..documents.reading import Node, read_json
 from ..scan.objects import FORMAT as OBJECTS_FORMAT
 from ..scan.objects import VERSION as OBJECTS_VERSION
@@ -34,9 +34,9 @@ _SHARES = ("angle", "placement", "centring", "certainty")
 def run_grasp(arguments: argparse.Namespace, console: Console) -> int:
     """`mmgrasp grasp`: ranked grasps of the objects in a map; the exit code."""
     if arguments.out is not None:
-        check_file(arguments.out, _text({"format": FORMAT})[:-3].encode())
+        check_new_file(arguments.out)
     if arguments.png is not None:
-        check_file(arguments.png, PNG)
+        check_new_file(arguments.png)
         if arguments.out is not None and os.path.realpath(arguments.out) == os.path.realpath(arguments.png):
             raise InvalidInput(f"--png {printable(str(arguments.png))}: is the file of -o, too: give another name")
     hand, arm = _read_hand(arguments)

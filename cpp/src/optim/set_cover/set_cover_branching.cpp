@@ -63,18 +63,21 @@ class InterruptHandler {
   struct sigaction own_ {};
 };
 
-/// Ends CBC's search at its next event once the monitor says so.
+/// Ends CBC's search at its next event once the monitor says so, and reports how much of its time is over.
 class StopAtEvents : public CbcEventHandler {
  public:
-  explicit StopAtEvents(const Monitor& monitor) : monitor_(&monitor) {}
+  StopAtEvents(const Monitor& monitor, double time_limit) : monitor_(&monitor), time_limit_(time_limit) {}
   CbcAction event(CbcEvent) override {
     interrupts_.restore();
+    monitor_->report("set cover", std::min(1.0, watch_.seconds() / time_limit_));
     return monitor_->stopped() ? stop : noAction;
   }
   CbcEventHandler* clone() const override { return new StopAtEvents(*this); }
 
  private:
   const Monitor* monitor_;
+  double time_limit_;
+  Stopwatch watch_;
   InterruptHandler interrupts_;
 };
 
@@ -125,7 +128,7 @@ BranchAndBoundAnswer run_cbc(const SetCoverProblem& problem, double known_cost, 
   CbcModel model(solver);
   CbcSolverUsefulData data;
   CbcMain0(model, data);
-  StopAtEvents stop_at_events(monitor);
+  StopAtEvents stop_at_events(monitor, time_limit);
   model.passInEventHandler(&stop_at_events);
   model.setLogLevel(0);
   model.setAllowableGap(0.0);

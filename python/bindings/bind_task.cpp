@@ -92,20 +92,23 @@ void bind_problem(py::module_& m) {
       py::arg("section"), "Raises InvalidInput when an option of a scenario's section is out of range.");
   py::class_<Part>(m, "Part", "One part in a tray.")
       .def(py::init([](std::string name, std::vector<LinkShape> shapes, const ArrayLike& T_world_part,
-                       std::vector<Grasp> grasps, bool target, int grasps_too_wide, double mass) {
+                       std::vector<Grasp> grasps, bool target, int grasps_too_wide, double mass, bool grasps_sampled) {
              return Part{std::move(name),
                          std::move(shapes),
                          pose_argument(T_world_part, "T_world_part"),
                          target,
                          std::move(grasps),
                          grasps_too_wide,
-                         finite_argument(mass, "mass")};
+                         finite_argument(mass, "mass"),
+                         grasps_sampled};
            }),
            py::arg("name"), py::arg("shapes"), py::arg("T_world_part"), py::arg("grasps") = std::vector<Grasp>{},
            py::kw_only(), py::arg("target") = true, py::arg("grasps_too_wide") = 0, py::arg("mass") = 0.0,
+           py::arg("grasps_sampled") = false,
            "`shapes` in the part's frame, `T_world_part` (4, 4), candidate `grasps` best first. A part that is no "
            "`target`\nstays where it is; `grasps_too_wide` says how many candidates were left out because the gripper "
-           "does not open so far.\n`mass` [kg]; 0: not known.")
+           "does not open so far.\n`mass` [kg]; 0: not known. `grasps_sampled`: others may exist, so that nothing is "
+           "proven of the part where these are impossible.")
       .def_readonly("name", &Part::name, "Unique over the problem.")
       .def_readonly("shapes", &Part::shapes, "Its body, in the part's frame.")
       .def_property_readonly(
@@ -115,6 +118,7 @@ void bind_problem(py::module_& m) {
       .def_readonly("grasps_too_wide", &Part::grasps_too_wide,
                     "Candidates left out because the gripper does not open so far.")
       .def_readonly("mass", &Part::mass, "[kg]; 0: not known.")
+      .def_readonly("grasps_sampled", &Part::grasps_sampled, "Others may exist.")
       .def("__repr__", [](const Part& p) {
         return "Part('" + p.name + "', " + std::to_string(p.grasps.size()) + " grasps" + (p.target ? ")" : ", stays)");
       });

@@ -383,3 +383,15 @@ def test_meshes_may_be_simpler_within_a_tolerance(
         assert plan.outcome == mg.Outcome.solved
         assert mg.verify_plan(plan.to_dict(), scenario=path, samples=100).faults == []
     assert kinds == {0.0: "mesh", 0.001: "cylinder"}
+
+
+def test_parts_larger_than_the_bin_are_told(
+    small: dict[str, Any], write: Callable[..., Path], caplog: pytest.LogCaptureFixture
+) -> None:
+    mg.load_scenario(write(small))
+    assert "larger than" not in caplog.text
+    long, wide = (1e-3 * round(1e3 * side) for side in (0.05, 0.03))  # the bracket lies on its smallest side
+    for size, told in (([wide, long, 0.1], False), ([long, wide - 0.002, 0.1], True), ([0.2, wide - 0.002, 0.1], True)):
+        caplog.clear()
+        mg.load_scenario(write(edited(small, "place_region.size", size)))
+        assert ("is 30 x 50 mm, larger than place_region.size" in caplog.text) == told, (size, caplog.text)

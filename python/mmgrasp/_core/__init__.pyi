@@ -2947,11 +2947,11 @@ class Part:
     """
     One part in a tray.
     """
-    def __init__(self, name: str, shapes: collections.abc.Sequence[LinkShape], T_world_part: numpy.typing.ArrayLike, grasps: collections.abc.Sequence[Grasp] = [], *, target: bool = True, grasps_too_wide: int = 0, mass: float = 0.0) -> None:
+    def __init__(self, name: str, shapes: collections.abc.Sequence[LinkShape], T_world_part: numpy.typing.ArrayLike, grasps: collections.abc.Sequence[Grasp] = [], *, target: bool = True, grasps_too_wide: int = 0, mass: float = 0.0, grasps_sampled: bool = False) -> None:
         """
         `shapes` in the part's frame, `T_world_part` (4, 4), candidate `grasps` best first. A part that is no `target`
         stays where it is; `grasps_too_wide` says how many candidates were left out because the gripper does not open so far.
-        `mass` [kg]; 0: not known.
+        `mass` [kg]; 0: not known. `grasps_sampled`: others may exist, so that nothing is proven of the part where these are impossible.
         """
     def __repr__(self) -> str:
         ...
@@ -2964,6 +2964,11 @@ class Part:
     def grasps(self) -> list[Grasp]:
         """
         Candidates, best first.
+        """
+    @property
+    def grasps_sampled(self) -> bool:
+        """
+        Others may exist.
         """
     @property
     def grasps_too_wide(self) -> int:

@@ -379,7 +379,7 @@ def _plan(text: str) -> Path:
     """A plan's file, or the folder that `mmgrasp plan` filled."""
     path = _path(text)
     inside = path / "plan.json"
-    return inside if os.path.isfile(inside) else path
+    return inside if os.path.isdir(path) else path
 
 
 def _source(text: str) -> str:

@@ -40,8 +40,16 @@ def leave_streams() -> None:
         os.dup2(nowhere, number)
 
 
+_NARROWEST, _USUAL_WIDTH = 20, 80  # columns of a terminal
+
+
 class CommandConsole(Console):
     """A console that leaves it to the command what becomes of output that nobody reads."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(**options)
+        if self.width < _NARROWEST:  # COLUMNS=0, say: tables would be empty
+            self.width = _USUAL_WIDTH
 
     def on_broken_pipe(self) -> NoReturn:
         """Called where writing failed; rich would end the process with the code of a plan with faults."""

@@ -262,8 +262,12 @@ class Node:
             out = np.array(self.raw, dtype=float)
         except (TypeError, ValueError, OverflowError):
             self.fail("must be numbers in rows of equal length")
-        if not np.isfinite(out).all():
-            self.fail("must be finite numbers")
+        is_good = np.abs(out) <= LARGEST  # nor is what is no number
+        if not is_good.all():
+            wrong = self
+            for index in np.argwhere(~is_good)[0].tolist():
+                wrong = wrong.child(index)
+            wrong.fail(f"must be a finite number of at most {LARGEST:g}")
         if columns is not None and (out.ndim != 2 or out.shape[1] != columns):
             self.fail(f"must be rows of {columns} numbers")
         return out

@@ -113,6 +113,7 @@ def _only(setup: TraySetup, names: Collection[str]) -> TraySetup:
             target=part.name in names and part.name in candidates,
             grasps_too_wide=part.grasps_too_wide,
             mass=part.mass,
+            grasps_sampled=part.grasps_sampled,
         )
         for part in tray.parts
     ]

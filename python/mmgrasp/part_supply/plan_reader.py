@@ -24,7 +24,8 @@ def plan_to_check(root: Node) -> checks.PlanToCheck:
         if sha256_of(mesh["file"].string()) != mesh["sha256"].string():
             mesh["file"].fail("the mesh file has changed since the plan was made")
     base = robot["base"].choice("diff_drive", "omni")
-    planned = RobotSource(base, base_limits=limits, srdf=robot["srdf"].string())
+    with robot["base_limits"].blamed():
+        planned = RobotSource(base, base_limits=limits, srdf=robot["srdf"].string())
     files = {mesh["file"].raw: mesh["file"].raw for mesh in robot["meshes"].elements()}
     planned.add_urdf(
         robot["urdf"].string(), origin=f"{printable(root.document.source)}: scenario.robot.urdf", mesh_files=files
@@ -120,6 +121,9 @@ def _read_scene(plan: checks.PlanToCheck, scenario: Node) -> None:
     plan.obstacles = [_read_body(node) for node in scenario["obstacles"].elements()]
     plan.floor = -math.inf if scenario["floor"].raw is None else scenario["floor"].number()
     plan.trays = [tray["name"].string() for tray in scenario["trays"].elements()]
+    for tray in scenario["trays"].elements():
+        if "size" in tray:
+            tray["size"].numbers(3, above=0)
     farthest = scenario["options"]["grid_max_distance"].number(least=0) or math.inf
     plan.searched = {
         tray["name"].raw: checks.CheckedTray(

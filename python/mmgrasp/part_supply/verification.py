@@ -87,8 +87,9 @@ def verify_plan(
     outcome = root["outcome"].string()
     if outcome != "solved":
         return PlanVerdict([checks.Fault("no-plan", "outcome", f"the file holds no plan: its outcome is {outcome}")])
-    to_check = plan_to_check(root)
-    faults = check_consistency(root.raw) + check_scans(root)
+    with root["scenario"].blamed():
+        to_check = plan_to_check(root)
+        faults = check_consistency(root.raw) + check_scans(root)
     if scenario is not None:
         expected = scenario_to_dict(chosen_as(load_scenario(scenario, robot=robot, progress=progress), root.raw))
         faults += [_changed(path, was, now) for path, was, now in differences(root["scenario"].raw, expected)]

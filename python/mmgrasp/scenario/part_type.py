@@ -22,6 +22,11 @@ class PartType:
     why_none: str = ""
     """Why suction cups found no grasp."""
 
+    @property
+    def sampled(self) -> bool:
+        """The grasps were drawn, not listed."""
+        return "grasps" not in self.node
+
 
 def read_grasp_options(entry: Node, known: dict[str, tuple[Any, str]]) -> dict[str, Any]:
     """The key `grasp_options`; numbers out of range are left to the sampler."""

@@ -26,7 +26,7 @@ from .robot_section import RobotSetup, choose_sections, find_file, read_setup
 from .scan_section import ScanReader, moved
 from .schema import with_article
 from .shapes import read_shapes
-from .tray_section import TraySetup, read_part_types, read_tray
+from .tray_section import TraySetup, footprint, read_part_types, read_tray
 
 TOP_KEYS = "format version name robot start goal positioning_uncertainty trays"
 TOP_OPTIONAL = (
@@ -174,6 +174,7 @@ def _read_scenario(
     types = read_part_types(root["part_types"], setup.gripper) if "part_types" in root else {}
     scans = ScanReader(setup.gripper, _in_world(obstacles), find_file, progress)
     trays = _read_trays(root, types, setup, scans)
+    _warn_of_a_small_bin(trays, types, setup.place_region.size)
     check_grid_size(root, trays, {key: value for key, (value, _) in _core._supply_option_table().items()} | options)
     for tray in trays:
         obstacles.append(Obstacle(f"tray {tray.tray.name}", tray.tray.T_world_tray, tray.walls))
@@ -332,6 +333,23 @@ def _read_trays(root: Node, types: dict[str, PartType], setup: RobotSetup, scans
     if not any(tray.targets for tray in trays):
         root["trays"].fail("at least one part of one tray must be a target")
     return trays
+
+
+def _warn_of_a_small_bin(trays: list[TraySetup], types: dict[str, PartType], size: np.ndarray) -> None:
+    """Parts are let go level, with their origin over the bin: what is wider than the bin does not fall into it."""
+    seen: set[str] = set()
+    for tray in trays:
+        targets = [p for p in tray.tray.parts if p.name in tray.targets and tray.kinds.get(p.name, "") in types]
+        for part in targets:
+            kind = tray.kinds[part.name]
+            if kind in seen:
+                continue
+            seen.add(kind)
+            sides = np.sort(footprint(types[kind], part.T_world_part))
+            if np.any(sides > np.sort(size) + 1e-6):
+                types[kind].node.warn(
+                    f"is {1e3 * sides[0]:.0f} x {1e3 * sides[1]:.0f} mm, larger than place_region.size, {1e3 * size[0]:.0f} x {1e3 * size[1]:.0f} mm"
+                )
 
 
 def _check_names(root: Node, obstacles: list[Obstacle], trays: list[TraySetup]) -> None:

@@ -209,6 +209,7 @@ def _scanned(
             part.grasps,
             target=part.name in targets,
             grasps_too_wide=part.grasps_too_wide,
+            grasps_sampled=True,
         )
         for part in found
     ]
@@ -253,6 +254,7 @@ def _typed(
                 target=full in targets,
                 grasps_too_wide=types[kind].too_wide,
                 mass=types[kind].mass,
+                grasps_sampled=types[kind].sampled,
             )
         )
     return parts, targets
@@ -268,6 +270,13 @@ def _kind(node: Node, types: dict[str, PartType]) -> str:
 def _bounds(kind: PartType, T: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     boxes = [LinkShape(shape.shape, T @ shape.pose).bounds for shape in kind.shapes]
     return np.min([low for low, _ in boxes], axis=0), np.max([high for _, high in boxes], axis=0)
+
+
+def footprint(kind: PartType, T: np.ndarray) -> np.ndarray:
+    """Length and width of a part that lies as in T, along the horizontal direction of its own x axis and across [m]."""
+    level = _core.pose([0, 0, 0], rpy=[0, 0, -np.arctan2(T[1, 0], T[0, 0])]) @ T
+    low, high = _bounds(kind, level)
+    return np.asarray((high - low)[:2])
 
 
 def _resting(kind: PartType, x: float, y: float, rpy: list[float]) -> np.ndarray:

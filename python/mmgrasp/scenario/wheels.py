@@ -77,7 +77,13 @@ def limits_of_wheels(node: Node, base: str, stated: dict[str, float]) -> dict[st
         if base == "omni":
             # A turning platform's own axes turn under its velocity, of which the rims leave (rim - lever omega) omega.
             most_turned = wheels.along * limits["linear_velocity"] * limits["angular_velocity"]
-            reach -= min(most_turned, rim**2 / (4 * wheels.lever))
+            by_turning = min(most_turned, rim**2 / (4 * wheels.lever))
+            if by_turning >= reach:
+                node["acceleration"].fail(
+                    f"must be more than {by_turning / wheels.radius:.3g}, which turning at base_limits.angular_velocity, {limits['angular_velocity']:.3g}, "
+                    f"takes while the base drives at linear_velocity, {limits['linear_velocity']:.3g}: or give lower ones"
+                )
+            reach -= by_turning
         limits |= _shared_acceleration(node, wheels, stated, reach)
     return limits
 

@@ -204,6 +204,12 @@ TEST(PartSupply, OnlyWhatNoBasePoseAndNoArmReachesIsProven) {
   problem.world.add("lid", test::box_shape(0.2, 0.2, 0.01),
                     Pose(Eigen::Translation3d(on_table.x(), on_table.y(), 0.51)));
   EXPECT_EQ(plan_part_supply(problem, database()).outcome, Outcome::infeasible);
+  part.grasps_sampled = true;  // of others nothing is known
+  EXPECT_EQ(plan_part_supply(problem, database()).outcome, Outcome::not_found);
+  part.T_world_part.translation().z() = highest + 0.5;  // but nobody has longer links
+  EXPECT_EQ(plan_part_supply(problem, database()).outcome, Outcome::infeasible);
+  part.T_world_part.translation() = on_table;
+  part.grasps_sampled = false;
   problem.world.remove("lid");
   Part lid = problem.trays[1].parts[0];
   lid.name = "B/lid";

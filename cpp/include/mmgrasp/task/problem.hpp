@@ -23,6 +23,7 @@ struct MMGRASP_EXPORT Part {
   std::vector<Grasp> grasps;  ///< Candidates, best first; without postures.
   int grasps_too_wide = 0;    ///< Candidates dropped before planning because the gripper does not open so far.
   double mass = 0;            ///< [kg]; 0: not known, which suction cups cannot hold.
+  bool grasps_sampled = false;  ///< Others may exist: that these are impossible proves nothing of the part.
 };
 
 /// A tray and the parts in it. The tray's own walls are scene objects.

@@ -50,6 +50,18 @@ bool beyond(const Reach& reach, double workspace, const Eigen::Vector3d& tool) {
   return std::hypot(std::max(aside, 0.0), tool.z() - reach.centre.z()) > reach.radius + kTolerance;
 }
 
+/// How far from the part's origin any hand that holds it may have its tool: its surface lies between the pads. The grasps
+/// that were drawn, perhaps with a standoff, are not farther.
+double farthest_tool(const PartSupplyProblem& problem, const Part& part) {
+  double around = 0, drawn = 0;
+  for (const LinkShape& shape : part.shapes) {
+    const Eigen::AlignedBox3d box = shape_bounds(shape.shape, shape.T_link_shape);
+    around = std::max(around, box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).norm());
+  }
+  for (const Grasp& grasp : part.grasps) drawn = std::max(drawn, grasp.T_object_hand.translation().norm());
+  return std::max(drawn, around + problem.gripper.max_opening + problem.gripper.finger_depth);
+}
+
 }  // namespace
 
 bool grasp_is_impossible(const PartSupplyProblem& problem, const BasePoseEvaluator& evaluator, TrayId tray) {
@@ -60,6 +72,12 @@ bool grasp_is_impossible(const PartSupplyProblem& problem, const BasePoseEvaluat
     others.erase(std::remove(others.begin(), others.end(), target), others.end());
     const BasePoseEvaluator alone = evaluator.without(others);
     const Part& part = part_of(problem, target);
+    if (part.grasps_sampled) {
+      Reach farther = reach;
+      farther.radius += farthest_tool(problem, part);
+      if (beyond(farther, workspace, part.T_world_part.translation())) return true;
+      continue;
+    }
     bool possible = false;
     for (int g = 0; g < static_cast<int>(part.grasps.size()) && !possible; ++g) {
       const Eigen::Vector3d tool = (part.T_world_part * part.grasps[g].T_object_hand).translation();

@@ -1,5 +1,10 @@
 // Maps of depth cameras as obstacles of a world.
+#include <pthread.h>
+
 #include <algorithm>
+#include <mutex>
+#include <new>
+#include <shared_mutex>
 
 #include "batch.hpp"
 #include "bindings.hpp"
@@ -51,9 +56,29 @@ OccupancyObstacleOptions occupancy_obstacle(const py::handle& unknown, const py:
   return options;
 }
 
-template <typename Map, typename Options>
-std::vector<Voxels> cells_without_gil(const Map& map, const Options& options) {
-  return interruptible([&] { return map.obstacle_cells(options); });
+/// Octrees have no lock of their own: while a frame goes into one map nobody reads or changes any. A child that is
+/// forked meanwhile begins with a mutex of its own.
+std::shared_mutex& octrees() {
+  static std::shared_mutex* mutex = [] {
+    ::pthread_atfork(nullptr, nullptr, [] { new (&octrees()) std::shared_mutex; });
+    return new std::shared_mutex;
+  }();
+  return *mutex;
+}
+
+template <typename Work>
+auto reading_octrees(const Work& work) {
+  const std::shared_lock lock(octrees());
+  return work();
+}
+
+template <typename Work>
+auto reading_octrees_interruptibly(const Work& work) {
+  return interruptible([&] { return reading_octrees(work); });
+}
+
+std::vector<Voxels> sdf_cells(const ProbabilisticSdf& sdf, const SdfObstacleOptions& options) {
+  return interruptible([&] { return sdf.obstacle_cells(options); });
 }
 
 const std::vector<OptionField<OccupancyOptions>>& occupancy_fields() {
@@ -87,7 +112,10 @@ void bind_occupancy(py::module_& m) {
       .def(
           "integrate",
           [](OccupancyMap& map, const DepthImage& image, const DepthCamera& camera) {
-            return interruptible([&] { return map.integrate(image, camera); });
+            return interruptible([&] {
+              const std::unique_lock lock(octrees());
+              return map.integrate(image, camera);
+            });
           },
           "image"_a, "camera"_a,
           "Casts a ray through every measured pixel in range; every cell changes at most once. Raises InvalidInput,\n"
@@ -100,7 +128,8 @@ void bind_occupancy(py::module_& m) {
             py::array_t<bool> occupied(columns.cols()), known(columns.cols());
             bool *const is_occupied = occupied.mutable_data(), *const is_known = known.mutable_data();
             in_pieces(columns.cols(), [&](Eigen::Index first, Eigen::Index count) {
-              const std::vector<Occupancy> states = map.states(columns.middleCols(first, count));
+              const std::vector<Occupancy> states =
+                  reading_octrees([&] { return map.states(columns.middleCols(first, count)); });
               for (Eigen::Index i = 0; i < count; ++i) {
                 is_occupied[first + i] = states[i] == Occupancy::occupied;
                 is_known[first + i] = states[i] != Occupancy::unknown;
@@ -112,7 +141,8 @@ void bind_occupancy(py::module_& m) {
       .def(
           "obstacle_cells",
           [](const OccupancyMap& map, const FreeOrOccupied& unknown, const OptionalArray& bounds) {
-            return cells_without_gil(map, occupancy_obstacle(unknown, bounds));
+            const OccupancyObstacleOptions options = occupancy_obstacle(unknown, bounds);
+            return reading_octrees_interruptibly([&] { return map.obstacle_cells(options); });
           },
           py::kw_only(), "unknown"_a = "free", "bounds"_a = py::none(),
           "What World.add_occupancy() adds: one Voxels per edge length, finest first.")
@@ -120,7 +150,7 @@ void bind_occupancy(py::module_& m) {
           "save",
           [](const OccupancyMap& map, const PathLike& path) {
             const std::string file = path_argument(path, "path");
-            interruptible([&] { map.save(file); });
+            reading_octrees_interruptibly([&] { map.save(file); });
           },
           "path"_a,
           "Writes OctoMap's format: .bt (occupied or free) or .ot (with probabilities). Raises IoError naming the "
@@ -138,21 +168,27 @@ void bind_occupancy(py::module_& m) {
            "kind of tree, truncated or damaged." +
            option_help(occupancy_fields()))
               .c_str())
-      .def_property_readonly("frames", &OccupancyMap::frames, "Integrated since it was made or loaded.")
-      .def_property_readonly("cells", &OccupancyMap::cells, "Leaves, free and occupied.")
-      .def_property_readonly("memory", &OccupancyMap::memory, "[bytes]")
+      .def_property_readonly(
+          "frames", [](const OccupancyMap& o) { return reading_octrees([&] { return o.frames(); }); },
+          "Integrated since it was made or loaded.")
+      .def_property_readonly(
+          "cells", [](const OccupancyMap& o) { return reading_octrees([&] { return o.cells(); }); },
+          "Leaves, free and occupied.")
+      .def_property_readonly(
+          "memory", [](const OccupancyMap& o) { return reading_octrees([&] { return o.memory(); }); }, "[bytes]")
       .def_property_readonly(
           "resolution", [](const OccupancyMap& o) { return o.options().resolution; }, "Edge of the smallest cell [m].")
       .def_property_readonly(
           "bounds",
           [](const OccupancyMap& o) {
-            const Eigen::AlignedBox3d box = o.bounds();
+            const Eigen::AlignedBox3d box = reading_octrees([&] { return o.bounds(); });
             require(!box.isEmpty(), "bounds", "empty", "the map knows nothing yet");
             return std::make_tuple(box.min(), box.max());
           },
           "(lower, upper) corner of the known cells [m]. Raises InvalidInput while nothing is known.")
       .def("__repr__", [](const OccupancyMap& o) {
-        return "OccupancyMap(" + std::to_string(o.cells()) + " cells of " + std::to_string(o.options().resolution) +
+        const std::size_t cells = reading_octrees([&] { return o.cells(); });
+        return "OccupancyMap(" + std::to_string(cells) + " cells of " + std::to_string(o.options().resolution) +
                " m and more)";
       });
 }
@@ -166,7 +202,7 @@ void bind_world_maps(py::module_& m) {
       .def(
           "obstacle_cells",
           [](const ProbabilisticSdf& sdf, double sigmas, const FreeOrOccupied& unknown, const OptionalArray& bounds) {
-            return cells_without_gil(sdf, sdf_obstacle(sigmas, unknown, bounds));
+            return sdf_cells(sdf, sdf_obstacle(sigmas, unknown, bounds));
           },
           "sigmas"_a = SdfObstacleOptions().sigmas, py::kw_only(), "unknown"_a = "free", "bounds"_a = py::none(),
           "What World.add_sdf() adds: one Voxels per edge length, finest first.");
@@ -176,7 +212,7 @@ void bind_world_maps(py::module_& m) {
           [](World& w, const std::string& name, const ProbabilisticSdf& sdf, double sigmas,
              const FreeOrOccupied& unknown, const OptionalArray& bounds, const OptionalArray& pose) {
             const SdfObstacleOptions options = sdf_obstacle(sigmas, unknown, bounds);
-            add_cells(w, name, cells_without_gil(sdf, options), pose_argument(pose, "pose"));
+            add_cells(w, name, sdf_cells(sdf, options), pose_argument(pose, "pose"));
           },
           "name"_a, "sdf"_a, "sigmas"_a = SdfObstacleOptions().sigmas, "unknown"_a = "free", py::kw_only(),
           "bounds"_a = py::none(), "pose"_a = py::none(),
@@ -190,7 +226,7 @@ void bind_world_maps(py::module_& m) {
           [](World& w, const std::string& name, const OccupancyMap& occupancy, const FreeOrOccupied& unknown,
              const OptionalArray& bounds, const OptionalArray& pose) {
             const OccupancyObstacleOptions options = occupancy_obstacle(unknown, bounds);
-            add_cells(w, name, cells_without_gil(occupancy, options), pose_argument(pose, "pose"));
+            add_cells(w, name, reading_octrees_interruptibly([&] { return occupancy.obstacle_cells(options); }), pose_argument(pose, "pose"));
           },
           "name"_a, "occupancy"_a, "unknown"_a = "free", py::kw_only(), "bounds"_a = py::none(), "pose"_a = py::none(),
           "The occupied cells of an octree as solid voxels; with `unknown=\"occupied\"` also those that no ray "

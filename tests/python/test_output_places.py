@@ -566,3 +566,13 @@ def test_a_draft_that_is_not_locked_yet_may_be_taken_for_a_dead_one(
         assert draft.is_dir()
         (draft / "plan.json").write_text("ours")
     assert not list(tmp_path.iterdir())
+
+
+def test_a_saved_plan_replaces_plans_only(small_plan: Any, small_path: Path, tmp_path: Path) -> None:
+    scenario = tmp_path / "scenario.yaml"
+    scenario.write_text(small_path.read_text())
+    with pytest.raises(mg.IoError, match="not as an earlier result"):
+        small_plan.save(scenario)
+    assert scenario.read_text() == small_path.read_text()
+    once = small_plan.save(tmp_path / "plan.json").read_text()
+    assert small_plan.save(tmp_path / "plan.json").read_text() == once

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import mmgrasp as mg
-from argument_objects import ARM, OBJECTS, Q
+from argument_objects import ARM, OBJECTS, Q, depth_camera, depth_frame, occupancy_map
 from conftest import ASSETS
 
 
@@ -95,3 +95,26 @@ def test_a_subinterpreter_is_refused_at_once() -> None:
     code = "import _xxsubinterpreters as s; s.run_string(s.create(), 'import mmgrasp')"
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False)
     assert run.returncode == 1 and "cannot be imported in a subinterpreter" in run.stderr
+
+
+def test_an_octree_takes_frames_and_questions_side_by_side() -> None:
+    octree, image, camera = occupancy_map(), depth_frame(), depth_camera()
+    points = np.random.default_rng(1).uniform(-1, 1, (2000, 3))
+    before = octree.frames
+    work = (
+        lambda: octree.integrate(image, camera),
+        lambda: octree.query(points),
+        lambda: octree.obstacle_cells(),
+        lambda: octree.bounds,
+    )
+
+    def often(call: Any) -> None:
+        for _ in range(20):
+            call()
+
+    threads = [threading.Thread(target=often, args=(call,)) for call in (*work, work[0])]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert octree.frames == before + 40

@@ -13,7 +13,7 @@ from typing import Any, overload
 from .. import _core
 from .._argument_errors import checked
 from .._core import InvalidInput, Outcome, PartSupplyPlan, PartSupplyProblem, ReachDatabase, RobotMotion
-from .._files import write_file, write_files
+from .._files import check_file, write_file, write_files
 from .._progress import Progress
 from ..scenario import Scenario, load_scenario
 from .chosen_parts import by_number, choose_parts, others_will_do
@@ -81,8 +81,9 @@ class ScenarioPlan:
         return plan_to_dict(self.scenario, self.plan)
 
     def save(self, path: str | os.PathLike[str]) -> Path:
-        """Writes plan.json."""
+        """Writes plan.json. Raises IoError where a file is that is no plan: the scenario, say."""
         target = Path(path)
+        check_file(target, b'{"format": "mmgrasp-plan"')
         write_file(target, json.dumps(self.to_dict(), allow_nan=False) + "\n")
         return target
 

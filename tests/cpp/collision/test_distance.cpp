@@ -178,6 +178,21 @@ TEST(Distance, DepthOfRoundBodiesInClosedForm) {
   EXPECT_NEAR(spheres.distance(q).value, -0.5, 1e-12);
 }
 
+/// Middles that coincide, and angles as people type them: all faces of the difference lie almost in a few planes.
+TEST(Distance, DepthOfBodiesThatAreAlmostSquareToEachOther) {
+  const double tiny[] = {0, 1e-12, -1e-10, 1e-9, 1.570796327 - M_PI / 2, -1e-8, 1e-7, 1e-6};
+  Rng rng(7);
+  for (const double half : {0.015, 0.05, 0.1}) {
+    CollisionChecker checker = make_checker(Cylinder{0.05, 0.1}, Box{Eigen::Vector3d::Constant(2 * half)});
+    for (int i = 0; i < 2000; ++i) {
+      Eigen::VectorXd q(6);
+      for (int k = 0; k < 3; ++k) q[k] = i % 2 ? 0 : tiny[rng.index(8)];
+      for (int k = 3; k < 6; ++k) q[k] = M_PI / 2 * static_cast<double>(rng.index(4)) + tiny[rng.index(8)];
+      ASSERT_NEAR(checker.distance(q).value, -(0.05 + half), 1e-5) << half << ": " << q.transpose();
+    }
+  }
+}
+
 TEST(Distance, DepthIsTheShortestWayOutOfConvexBodies) {
   Rng rng(3);
   int compared = 0;

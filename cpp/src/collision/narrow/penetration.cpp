@@ -1,6 +1,7 @@
 // Depth of overlap by the expanding polytope algorithm (van den Bergen 2001): the difference of the bodies is
 // approximated from inside by a polytope whose face nearest to the origin is pushed out until it lies on the surface.
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -80,23 +81,30 @@ class Polytope {
   // Takes in a point beyond a face: the faces that see it go, new ones join it to the rim they leave. False, with
   // nothing changed, when rounding leaves no proper rim.
   bool expand(const SimplexPoint& p) {
-    rim_.clear();
+    const std::array<int, 3> from = nearest().corner;
     seen_.clear();
     std::size_t kept = 0;
     for (std::size_t i = 0; i < faces_.size(); ++i) {
       const Face face = faces_[i];
-      if (face.normal.dot(p.w) - face.offset <= 1e-13 * scale_) {
+      if (face.normal.dot(p.w) - face.offset <= 1e-13 * scale_)
         faces_[kept++] = face;
-        continue;
-      }
-      seen_.push_back(face);
-      for (int e = 0; e < 3; ++e) cross_edge(face.corner[e], face.corner[(e + 1) % 3]);
+      else
+        seen_.push_back(face);
     }
     faces_.resize(kept);
+    find_rim();
+    // Faces that hang together have a rim of at most two edges more than they are. Where rounding lets others, apart from
+    // them, see the point, each would get a rim of its own, and the faces become three times as many every time.
+    if (rim_.size() > seen_.size() + 2) {
+      keep_what_is_apart_from(from);
+      kept = faces_.size();
+      find_rim();
+    }
     const int corner = static_cast<int>(points_.size());
     points_.push_back(p);
     for (const auto& edge : rim_) add_face({edge[0], edge[1], corner});
-    if (rim_.size() >= 3 && faces_.size() == kept + rim_.size()) return true;
+    const bool is_proper = rim_.size() >= 3 && rim_.size() <= seen_.size() + 2;
+    if (is_proper && faces_.size() == kept + rim_.size()) return true;
     faces_.resize(kept);
     faces_.insert(faces_.end(), seen_.begin(), seen_.end());
     return false;
@@ -140,6 +148,33 @@ class Polytope {
     const double area = normal.norm();
     if (!(area > 1e-16 * scale_ * scale_)) return;
     faces_.push_back({c, normal / area, normal.dot(p) / area});
+  }
+
+  void find_rim() {
+    rim_.clear();
+    for (const Face& face : seen_)
+      for (int e = 0; e < 3; ++e) cross_edge(face.corner[e], face.corner[(e + 1) % 3]);
+  }
+
+  // Of the faces that see a point only those stay seen that hang together with one of them, by its corners.
+  void keep_what_is_apart_from(const std::array<int, 3>& from) {
+    const auto first = std::find_if(seen_.begin(), seen_.end(), [&](const Face& face) { return face.corner == from; });
+    if (first == seen_.end()) return;
+    std::iter_swap(seen_.begin(), first);
+    std::size_t together = 1;  // of them, those in front
+    for (std::size_t done = 0; done < together; ++done) {
+      for (std::size_t i = together; i < seen_.size(); ++i) {
+        if (share_an_edge(seen_[done], seen_[i])) std::swap(seen_[i], seen_[together++]);
+      }
+    }
+    faces_.insert(faces_.end(), seen_.begin() + static_cast<std::ptrdiff_t>(together), seen_.end());
+    seen_.resize(together);
+  }
+
+  static bool share_an_edge(const Face& a, const Face& b) {
+    int shared = 0;
+    for (const int corner : a.corner) shared += std::count(b.corner.begin(), b.corner.end(), corner) > 0;
+    return shared == 2;
   }
 
   // An edge crossed in both directions lies between two faces that go: only edges crossed once are the rim.

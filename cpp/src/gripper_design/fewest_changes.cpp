@@ -137,7 +137,7 @@ class Search {
     while (better && !ended()) {
       better = false;
       const Bits current = best_set();
-      for (int out = current.first(); out >= 0 && !better; out = current.next(out + 1)) {
+      for (int out = current.first(); out >= 0 && !better && !ended(); out = current.next(out + 1)) {
         Bits rest(parts());
         for (int g = current.first(); g >= 0; g = current.next(g + 1)) {
           if (g != out) rest |= candidates_[g].parts;

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <set>
 #include <string>
+#include <unordered_map>
 #include <utility>
 
 #include "mmgrasp/core/detail/numbers.hpp"
@@ -132,6 +134,31 @@ class Places {
   double shortest_ = kInfinity, longest_ = -kInfinity;  // Of the finger lengths asked.
 };
 
+/// Candidates of different cost or parts, in the order in which they were added.
+class DistinctCandidates {
+ public:
+  void add(GripperCandidate candidate) {
+    std::uint64_t mixed = 0;
+    for (int p = candidate.parts.first(); p >= 0; p = candidate.parts.next(p + 1))
+      mixed = (mixed ^ static_cast<std::uint64_t>(p + 1)) * 0x9E3779B97F4A7C15ull + (mixed >> 29);
+    const auto [begin, end] = known_.equal_range(mixed);
+    const bool again = std::any_of(begin, end, [&](const auto& entry) {
+      const GripperCandidate& other = all_[entry.second];
+      return other.cost == candidate.cost && other.parts.subset_of(candidate.parts) &&
+             candidate.parts.subset_of(other.parts);
+    });
+    if (again) return;
+    known_.emplace(mixed, static_cast<int>(all_.size()));
+    all_.push_back(std::move(candidate));
+  }
+
+  std::vector<GripperCandidate> take() { return std::move(all_); }
+
+ private:
+  std::vector<GripperCandidate> all_;
+  std::unordered_multimap<std::uint64_t, int> known_;  // By a mixture of the parts.
+};
+
 /// Those that take more than any other of no higher cost, in the order given. What takes all of a candidate's parts
 /// takes the one of them that fewest of those kept take.
 std::vector<GripperCandidate> undominated(std::vector<GripperCandidate> all, int part_count, const Ended& ended) {
@@ -212,16 +239,14 @@ std::optional<std::vector<GripperCandidate>> gripper_candidates(const std::vecto
                                                                 const std::vector<GripperActuator>& actuators,
                                                                 const MinimalGrippersOptions& options,
                                                                 const Ended& ended) {
-  std::vector<GripperCandidate> all;
-  std::set<std::pair<double, Bits>> seen;  // By cost and parts.
+  DistinctCandidates distinct;
   for (std::size_t a = 0; a < actuators.size(); ++a) {
     const Places places(requirements, actuators[a], options, ended);
     if (places.empty()) continue;
     const auto add = [&](double min_opening, double finger_length, const std::vector<int>& taken) {
       GripperCandidate candidate{static_cast<int>(a), min_opening, finger_length, actuators[a].cost, Bits(part_count)};
       for (const int r : taken) candidate.parts.set(part_of[r]);
-      if (taken.empty() || !seen.emplace(candidate.cost, candidate.parts).second) return;
-      all.push_back(std::move(candidate));
+      if (!taken.empty()) distinct.add(std::move(candidate));
     };
     if (options.grid_openings > 0) {
       places.for_each_on_grid(add);
@@ -229,7 +254,7 @@ std::optional<std::vector<GripperCandidate>> gripper_candidates(const std::vecto
       places.for_each_exact(add);
     }
   }
-  std::vector<GripperCandidate> out = undominated(std::move(all), part_count, ended);
+  std::vector<GripperCandidate> out = undominated(distinct.take(), part_count, ended);
   if (ended()) return std::nullopt;
   return out;
 }

@@ -18,7 +18,9 @@ using namespace detail;
 
 constexpr double kSameCost = 1e-12;  // Share by which sums of the same costs in another order may differ.
 constexpr double kSameValue = 1e-9;
-constexpr int kTries = 20;  // One try may take this share of the nodes.
+constexpr int kSearches = 5;               // All tries together may take so many times the nodes of one search,
+constexpr std::size_t kMostSought = 4000;  // Of more requirements only the set at hand is asked: too many candidates.
+constexpr int kOneTry = 4;                 // and one try this share of it.
 
 /// Which requirements each part may be taken by, over candidates that are made once: parts are held to their best one
 /// after the other, and a set that is as good as the least one is kept at hand.
@@ -31,13 +33,13 @@ class Preference {
         clock_(clock),
         monitor_(monitor),
         parts_(named_parts(question.requirements)) {
-    std::vector<int> each(question.requirements.size());
-    std::iota(each.begin(), each.end(), 0);
-    auto candidates = gripper_candidates(question.requirements, each, static_cast<int>(each.size()), question.actuators,
-                                         question.options, [&] { return ended(); });
-    if (!candidates) return;
-    candidates_ = std::move(*candidates);
-    nodes_left_ = question.options.max_nodes;
+    if (question.requirements.size() > kMostSought) {
+      candidates_ = least_set();
+    } else {
+      candidates_ = all_candidates();
+      if (candidates_.empty()) return;
+      nodes_left_ = static_cast<long>(kSearches) * question.options.max_nodes;
+    }
     allowed_ = by_part();
     take_over_least();
   }
@@ -72,6 +74,32 @@ class Preference {
     return out;
   }
 
+  /// By requirements; none when the time was over first.
+  std::vector<GripperCandidate> all_candidates() const {
+    std::vector<int> each(question_.requirements.size());
+    std::iota(each.begin(), each.end(), 0);
+    return gripper_candidates(question_.requirements, each, static_cast<int>(each.size()), question_.actuators,
+                              question_.options, [&] { return ended(); })
+        .value_or(std::vector<GripperCandidate>{});
+  }
+
+  std::vector<GripperCandidate> least_set() const {
+    std::vector<GripperCandidate> out;
+    for (const Gripper& g : least_.grippers) {
+      const int drive = drive_of(g);
+      const GripperActuator& actuator = question_.actuators[drive];
+      const auto count = static_cast<int>(question_.requirements.size());
+      GripperCandidate& candidate =
+          out.emplace_back(GripperCandidate{drive, g.min_opening, g.finger_length, actuator.cost, Bits(count)});
+      for (int r = 0; r < count; ++r) {
+        const SegmentRequirement& asked = question_.requirements[r];
+        if (meets(actuator, g.min_opening, g.finger_length, asked, required_range(asked, question_.options)))
+          candidate.parts.set(r);
+      }
+    }
+    return out;
+  }
+
   /// The least set's grippers, each as a candidate that does all that it does at no higher cost.
   void take_over_least() {
     for (std::size_t g = 0; g < least_.grippers.size(); ++g) {
@@ -79,7 +107,7 @@ class Preference {
       for (std::size_t p = 0; p < least_.gripper_of_part.size(); ++p)
         if (least_.gripper_of_part[p] == static_cast<int>(g)) asked.set(least_.requirement_of_part[p]);
       const auto place = std::find_if(candidates_.begin(), candidates_.end(), [&](const GripperCandidate& c) {
-        return c.cost <= cost_of(least_.grippers[g]) && asked.subset_of(c.parts);
+        return c.cost <= question_.actuators[drive_of(least_.grippers[g])].cost && asked.subset_of(c.parts);
       });
       if (place == candidates_.end()) throw std::logic_error("preferred_grippers: a gripper that is no candidate");
       set_.push_back(static_cast<int>(place - candidates_.begin()));
@@ -89,10 +117,10 @@ class Preference {
     if (!keep_set()) throw std::logic_error("preferred_grippers: the least set cannot be taken over");
   }
 
-  double cost_of(const Gripper& gripper) const {
+  int drive_of(const Gripper& gripper) const {
     const auto place = std::find_if(question_.actuators.begin(), question_.actuators.end(),
                                     [&](const GripperActuator& a) { return a.name == gripper.actuator; });
-    return place->cost;
+    return static_cast<int>(place - question_.actuators.begin());
   }
 
   bool takes(int candidate, int part) const {
@@ -175,6 +203,10 @@ class Preference {
 
   /// Any set, by branch and bound.
   bool search() {
+    if (nodes_left_ <= 0 || ended()) {
+      finished_ = false;
+      return false;
+    }
     std::vector<GripperCandidate> allowed;
     for (const GripperCandidate& c : candidates_) {
       GripperCandidate& out = allowed.emplace_back(c);
@@ -185,12 +217,9 @@ class Preference {
         if (takes(g, p)) allowed[g].parts.set(p);
     }
     MinimalGrippersOptions options = question_.options;
-    options.max_nodes = std::min(nodes_left_, std::max(1, question_.options.max_nodes / kTries));
+    options.max_nodes =
+        static_cast<int>(std::min<long>(nodes_left_, std::max(1, question_.options.max_nodes / kOneTry)));
     options.time_limit = std::max(clock_.seconds_left(), 1e-3);
-    if (nodes_left_ <= 0 || ended()) {
-      finished_ = false;
-      return false;
-    }
     // Where changes cost something, the bound counts them, too.
     const double least_cost = options.change_cost > 0 ? 0 : least_.lower_bound;
     const ChoiceAsGood answer = choice_as_good(allowed, parts_.count(), limit_, least_cost, options, monitor_);
@@ -211,7 +240,8 @@ class Preference {
   std::vector<int> set_;                      // Candidates at hand,
   GripperChoice choice_;                      // and which of them takes which part.
   GripperChoice limit_;                       // Cost and changes of the least set.
-  int run_end_ = 0, nodes_left_ = 0;
+  int run_end_ = 0;
+  long nodes_left_ = 0;
   bool finished_ = true;
 };
 

@@ -16,6 +16,7 @@ constexpr double kPalmMargin = 0.005;   // The palm reaches beyond the open fing
 constexpr double kPad = 0.02;           // Length of a pad along the approach [m].
 constexpr double kAnyOpening = 2.0;     // [m]
 constexpr double kLeastStroke = 0.001;  // [m]
+constexpr double kSameOpening = 2e-5;   // Rough faces give each grasp an opening of its own: alike within this [m].
 constexpr double kLeastContact = 5e-4;  // Thinner segments are not told to be held by less contact [m].
 
 std::string millimetres(double length) {
@@ -88,8 +89,9 @@ Tried try_grasp(const Judgement& by, const AssemblyGrasp& grasp, const SurfacePi
 }
 
 bool held_by_another(const FreeGrasp& f, const FreeGrasp& other) {
-  return std::abs(other.grasp.opening - f.grasp.opening) < 1e-6 && other.lengths.shortest <= f.lengths.shortest &&
-         other.lengths.longest >= f.lengths.longest && other.rank <= f.rank;
+  return std::abs(other.grasp.opening - f.grasp.opening) < kSameOpening &&
+         other.lengths.shortest <= f.lengths.shortest && other.lengths.longest >= f.lengths.longest &&
+         other.rank <= f.rank;
 }
 
 std::vector<FreeGrasp> undominated(std::vector<FreeGrasp> found) {

@@ -31,7 +31,7 @@ FewestChanges fewest_changes(const std::vector<GripperCandidate>& candidates, in
 struct ChoiceAsGood {
   std::optional<GripperChoice> found;
   bool decided = false;  ///< Found, or proven that there is none.
-  int nodes = 0;         ///< Of the search.
+  int nodes = 0;         ///< Looked at by the search.
 };
 
 /// The same search for any choice whose cost (of grippers and changes) and number of changes are no higher than those

@@ -72,7 +72,7 @@ struct Inertia {
 Inertia finger_inertia(const Gripper& g) {
   const std::vector<Eigen::Vector2d> corners = outline(g);
   double area = 0, first = 0;
-  Eigen::Vector2d second = Eigen::Vector2d::Zero();  // Of x^2 and y^2.
+  Eigen::Vector2d second = Eigen::Vector2d::Zero();  // Moments of x^2 and y^2.
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const Eigen::Vector2d &a = corners[i], &b = corners[(i + 1) % corners.size()];
     const double twice = a.x() * b.y() - b.x() * a.y();

@@ -130,8 +130,8 @@ class Places {
   const GripperActuator& actuator_;
   const MinimalGrippersOptions& options_;
   const Ended& ended_;
-  std::vector<Asked> asked_;                            // By opening.
-  double shortest_ = kInfinity, longest_ = -kInfinity;  // Of the finger lengths asked.
+  std::vector<Asked> asked_;                            // Sorted by opening.
+  double shortest_ = kInfinity, longest_ = -kInfinity;  // Finger lengths asked.
 };
 
 /// Candidates of different cost or parts, in the order in which they were added.
@@ -156,7 +156,7 @@ class DistinctCandidates {
 
  private:
   std::vector<GripperCandidate> all_;
-  std::unordered_multimap<std::uint64_t, int> known_;  // By a mixture of the parts.
+  std::unordered_multimap<std::uint64_t, int> known_;  // Keys are mixtures of the parts.
 };
 
 /// Those that take more than any other of no higher cost, in the order given. What takes all of a candidate's parts
@@ -172,7 +172,7 @@ std::vector<GripperCandidate> undominated(std::vector<GripperCandidate> all, int
     return sizes[a] != sizes[b] ? sizes[a] > sizes[b] : all[a].cost < all[b].cost;
   });
   std::vector<int> kept;
-  std::vector<std::vector<int>> takers(part_count);  // Of those kept.
+  std::vector<std::vector<int>> takers(part_count);  // Kept candidates by part.
   for (const int i : order) {
     if (ended()) break;
     const Bits& parts = all[i].parts;

@@ -406,7 +406,7 @@ class Planning {
   std::map<std::string, SurfacePieces> keep_off_;
   std::set<std::pair<std::string, int>> untouchable_;
   std::vector<GraspRank> ranks_;
-  std::map<std::string, OperationLoad> loads_;  // By operation; only where holding is asked.
+  std::map<std::string, OperationLoad> loads_;  // Keys are operations; only where holding is asked.
   bool impossible_ = false;                     // Some operation, whatever grasps are tried.
   PlanGrippersResult result_;
 };

@@ -19,7 +19,7 @@ using namespace detail;
 constexpr double kSameCost = 1e-12;  // Share by which sums of the same costs in another order may differ.
 constexpr double kSameValue = 1e-9;
 constexpr int kSearches = 5;               // All tries together may take so many times the nodes of one search,
-constexpr std::size_t kMostSought = 4000;  // Of more requirements only the set at hand is asked: too many candidates.
+constexpr std::size_t kMostSought = 4000;  // Beyond it only the set at hand is asked.
 constexpr int kOneTry = 4;                 // and one try this share of it.
 
 /// Which requirements each part may be taken by, over candidates that are made once: parts are held to their best one
@@ -74,7 +74,7 @@ class Preference {
     return out;
   }
 
-  /// By requirements; none when the time was over first.
+  /// Candidates by requirements; none when the time was over first.
   std::vector<GripperCandidate> all_candidates() const {
     std::vector<int> each(question_.requirements.size());
     std::iota(each.begin(), each.end(), 0);

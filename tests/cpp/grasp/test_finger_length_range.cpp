@@ -265,7 +265,7 @@ TEST(FingerLengthRange, NothingThatAFinerLookMeetsIsMissedOnATurn) {
     double under_palm = 0;
     bool under_finger = false;
     constexpr int kFine = 20000;
-    for (int k = 0; k <= kFine; ++k) {  // By hand: the middle straight, the turn even.
+    for (int k = 0; k <= kFine; ++k) {  // Worked out by hand: the middle straight, the turn even.
       const double share = static_cast<double>(k) / kFine;
       Pose at = Pose::Identity();
       at.linear() = Eigen::AngleAxisd((1 - share) * M_PI / 2, Eigen::Vector3d::UnitZ()).toRotationMatrix();

@@ -106,7 +106,7 @@ TEST(RoughFaces, BlocksWithNoiseAreHeldAsOftenAsWithout) {
       // The depths that fit are the same, and pads stand on what is outermost under them: none may be lost.
       EXPECT_EQ(rough.tried, smooth.tried) << noise;
       EXPECT_EQ(rough.free, smooth.free) << noise;
-      // Of two faces with 81 corners each the outermost are off by no more than five deviations.
+      // Two faces have 81 corners each: their outermost are off by no more than five deviations.
       EXPECT_GE(rough.narrowest, 0.02 - 2 * noise) << noise;
       EXPECT_LE(rough.widest, 0.02 + 10 * noise) << noise;
     }
@@ -208,7 +208,7 @@ TEST(RoughFaces, RingsWithNoiseAreHeldAsOftenAsWithout) {
   for (const unsigned seed : {1u, 2u, 3u}) {
     const Mesh rough = ring().with_noise(2e-5, seed);
     const Count found = count(rough, centric_grasps(*rough, {}, ring_cylinder()));
-    // Of some 400 corners one in forty rings is off by more than the four deviations that count as rough: none here.
+    // Some 400 corners: in one of forty rings one is off by more than the four deviations that count as rough.
     EXPECT_EQ(found.tried, even.tried) << seed;
     EXPECT_EQ(found.free, even.free) << seed;
     EXPECT_LE(found.widest, 0.02 + 2 * 5 * 2e-5) << seed;

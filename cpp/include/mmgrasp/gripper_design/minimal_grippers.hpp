@@ -53,7 +53,7 @@ struct MMGRASP_EXPORT MinimalGrippersResult {
   double lower_bound = 0;                ///< Proven: no set of grippers costs less.
   int changes = 0;                       ///< How often the gripper changes from part to part.
   int changes_bound = 0;                 ///< Proven: no set of the same cost needs fewer.
-  /// Of preferred_grippers(): for every better segment of a part it is decided whether the set stays as good with it.
+  /// preferred_grippers() decided for every better segment of a part whether the set stays as good with it.
   /// False: `max_nodes` or the time limit ended first, and some part may be taken by a worse one.
   bool preference_finished = true;
   int candidates = 0;                     ///< Grippers that were chosen among, none doing only what another does.

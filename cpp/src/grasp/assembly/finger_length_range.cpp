@@ -248,7 +248,7 @@ class Range {
   const AssemblyGrasp& grasp_;
   const AssemblyOperation& operation_;
   double step_;
-  Eigen::Vector3d middle_;  // Of the active parts.
+  Eigen::Vector3d middle_;  // The active parts'.
   Column palm_;
   std::vector<Column> closed_, opening_;
   double reach_ = 0;

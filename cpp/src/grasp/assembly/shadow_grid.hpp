@@ -22,7 +22,7 @@ class ShadowGrid {
   const std::vector<int>& cell(int x, int y) const { return cells_[static_cast<std::size_t>(y) * columns_ + x]; }
 
   Eigen::AlignedBox2d box_;
-  Eigen::Vector2d size_ = Eigen::Vector2d::Ones();  // Of a cell [m].
+  Eigen::Vector2d size_ = Eigen::Vector2d::Ones();  // A cell's [m].
   int columns_ = 1, rows_ = 1;
   std::vector<std::vector<int>> cells_;
 };

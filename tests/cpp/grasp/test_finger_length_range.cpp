@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/random.hpp"
 
@@ -285,6 +286,16 @@ TEST(FingerLengthRange, NothingThatAFinerLookMeetsIsMissedOnATurn) {
     bounded += under_finger || under_palm > 0;
   }
   EXPECT_GT(bounded, 20);
+}
+
+TEST(FingerLengthRange, EndsWhenInterrupted) {
+  AssemblyOperation operation = turning_bar({0, 0, 0});
+  const Eigen::Vector3d beside(0.07, 0.07, 0);
+  operation.passive = {{"wall", ring(0.2, 0.21, -0.1, 0.1)}, pin_at(beside)};
+  CancelToken stop;
+  stop.stop();
+  const detail::InterruptionScope scope(stop);
+  EXPECT_THROW(finger_length_range(at_end_of_bar({0, 0, 0}), operation), detail::Interrupted);
 }
 
 TEST(FingerLengthRange, RefusesWhatCannotBe) {

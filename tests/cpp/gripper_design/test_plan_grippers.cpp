@@ -7,6 +7,7 @@
 #include <set>
 
 #include "gripper_design/simple_parts.hpp"
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/gripper_design/operation_load.hpp"
 #include "mmgrasp/gripper_design/rehearse_operation.hpp"
@@ -347,6 +348,16 @@ TEST(RehearseOperation, MeetsWhatTooShortFingersWould) {
   EXPECT_EQ(rehearse_operation(gripper, grasp, order[0]), "");
   gripper.finger_length = found.requirements[found.set->requirement_of_part[0]].min_finger_length - 0.001;
   EXPECT_EQ(rehearse_operation(gripper, grasp, order[0]), "base meets peg during the motion");
+}
+
+TEST(RehearseOperation, EndsWhenInterrupted) {
+  const PlanGrippersResult& found = ring_plan();
+  CancelToken stop;
+  stop.stop();
+  const detail::InterruptionScope scope(stop);
+  EXPECT_THROW(
+      rehearse_operation(found.set->grippers[0], found.grasps[found.set->requirement_of_part[0]], ring_on_peg()[0]),
+      detail::Interrupted);
 }
 
 TEST(RehearseOperation, TurningPartsTakeTheGripperRoundTheirMiddle) {

@@ -318,8 +318,9 @@ std::vector<AssemblyGrasp> centric_grasps(const TriangleMesh& mesh, const std::v
   std::vector<AssemblyGrasp> out = centric_grasps(cylinder, options);
   const std::vector<int> segment = given_or_all(mesh, faces);
   const double rough = kRough * detail::wall_deviation(mesh, segment, cylinder);
+  const std::vector<int> beyond = detail::faces_beyond(mesh, segment, cylinder);
   for (AssemblyGrasp& grasp : out)
-    detail::stand_on_wall(mesh, segment, std::min(rough, options.parallel_angle * grasp.contact_length), grasp);
+    detail::stand_on_wall(mesh, beyond, std::min(rough, options.parallel_angle * grasp.contact_length), grasp);
   const auto too_wide = [&](const AssemblyGrasp& g) { return g.opening > options.max_opening; };
   out.erase(std::remove_if(out.begin(), out.end(), too_wide), out.end());
   return out;

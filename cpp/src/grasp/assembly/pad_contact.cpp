@@ -156,6 +156,21 @@ double wall_deviation(const TriangleMesh& mesh, const std::vector<int>& faces, c
   return 0;
 }
 
+std::vector<int> faces_beyond(const TriangleMesh& mesh, const std::vector<int>& faces, const CylinderFit& cylinder) {
+  const Pose T_cylinder_mesh = cylinder.T_mesh_cylinder.inverse();
+  std::vector<int> out;
+  InterruptionPoll poll;
+  for (const int f : faces) {
+    poll();
+    const auto& t = mesh.triangles[f];
+    const auto beyond = [&](int v) {
+      return (T_cylinder_mesh * mesh.vertices[v]).head<2>().norm() > cylinder.diameter / 2;
+    };
+    if (std::any_of(t.begin(), t.end(), beyond)) out.push_back(f);
+  }
+  return out;
+}
+
 void stand_on_wall(const TriangleMesh& mesh, const std::vector<int>& faces, double rough, AssemblyGrasp& grasp) {
   const double nominal = grasp.opening / 2;
   double reach = nominal;

@@ -24,6 +24,9 @@ void stand_on_facets(const TriangleMesh& mesh, const PadFaces& first, const PadF
 /// How far the corners of the outward wall among the faces lie off the cylinder [m]: the median, by area.
 double wall_deviation(const TriangleMesh& mesh, const std::vector<int>& faces, const CylinderFit& cylinder);
 
+/// The faces that reach out of the cylinder: the only ones that can open fingers farther.
+std::vector<int> faces_beyond(const TriangleMesh& mesh, const std::vector<int>& faces, const CylinderFit& cylinder);
+
 /// Opens a centric grasp so that no point of the faces, of those that stand out of the cylinder by at most `rough` [m],
 /// reaches into a pad.
 void stand_on_wall(const TriangleMesh& mesh, const std::vector<int>& faces, double rough, AssemblyGrasp& grasp);

@@ -44,13 +44,15 @@ std::string shown(double value) {
 
 SegmentRequirement make_requirement(const Given<std::string>& part, const Given<double>& opening,
                                     const Given<std::string>& segment, const Given<int>& fingers,
-                                    const Given<double>& shortest, const std::optional<Given<double>>& longest) {
+                                    const Given<double>& shortest, const std::optional<Given<double>>& longest,
+                                    const Given<double>& clearance) {
   const SegmentRequirement requirement{taken(part, "part"),
                                        taken(segment, "segment"),
                                        taken(fingers, "fingers"),
                                        taken(opening, "opening"),
                                        taken(shortest, "min_finger_length"),
-                                       or_infinite(longest, "max_finger_length")};
+                                       or_infinite(longest, "max_finger_length"),
+                                       taken(clearance, "clearance")};
   requirement.check();
   return requirement;
 }
@@ -69,8 +71,9 @@ void bind_requirement(py::module_& m) {
       "A part with several graspable segments has several; a gripper that meets one of them takes the part.\n\n"
       "    SegmentRequirement(\"sleeve\", 0.0375, fingers=3, min_finger_length=0.0227)")
       .def(py::init(&make_requirement), "part"_a, "opening"_a, py::kw_only(), "segment"_a = "", "fingers"_a = 2,
-           "min_finger_length"_a = 0.0, "max_finger_length"_a = py::none(),
-           "Part, opening [m], the segment's label, 2 or 3 fingers, limits of their length [m] (None: no upper one).")
+           "min_finger_length"_a = 0.0, "max_finger_length"_a = py::none(), "clearance"_a = 0.0,
+           "Part, opening [m], the segment's label, 2 or 3 fingers, limits of their length [m] (None: no upper one), "
+           "how far each finger opens to let go [m].")
       .def_readonly("part", &R::part, "Whose segment it is.")
       .def_readonly("segment", &R::segment, "Its label.")
       .def_readonly("fingers", &R::fingers, "2: parallel jaws; 3: centric fingers.")
@@ -79,6 +82,8 @@ void bind_requirement(py::module_& m) {
       .def_property_readonly(
           "max_finger_length", [](const R& r) { return OptionalNumber(or_none(r.max_finger_length)); },
           "[m]; None: any.")
+      .def_readonly("clearance", &R::clearance,
+                    "Each finger opens by this to let go: twice as much is kept free above the opening [m].")
       .def("__repr__", [](const R& r) {
         return "SegmentRequirement(" + r.name() + ", " + std::to_string(r.fingers) + " fingers, opening " +
                shown(r.opening) + ")";
@@ -128,6 +133,9 @@ void bind_gripper(py::module_& m) {
       .def_readonly("max_force", &G::max_force, "Largest force of each finger's joint [N].")
       .def_readonly("max_speed", &G::max_speed, "Largest speed of each finger's joint [m/s].")
       .def_property_readonly("pad_length", &G::pad_length, "Length of the pad along the approach [m].")
+      .def_property_readonly(
+          "pad_width", &G::pad_width,
+          "Width of the pad across the approach: the finger's, or what three fingers that close leave of it [m].")
       .def(
           "holds", [](const G& g, const Given<SegmentRequirement>& r) { return g.holds(taken(r, "requirement")); },
           "requirement"_a, "Whether it holds a segment: (5.2) of P1 with <= in place of <, to 1e-9 m.")
@@ -186,8 +194,8 @@ py::dict result_dict(const MinimalGrippersResult& r) {
   return py::dict("outcome"_a = to_string(r.outcome), "grippers"_a = grippers, "parts"_a = r.parts,
                   "gripper_of_part"_a = r.gripper_of_part, "requirement_of_part"_a = r.requirement_of_part,
                   "cost"_a = r.cost, "lower_bound"_a = r.lower_bound, "changes"_a = r.changes,
-                  "changes_bound"_a = r.changes_bound, "candidates"_a = r.candidates, "uncovered"_a = r.uncovered,
-                  "explanations"_a = r.explanations);
+                  "changes_bound"_a = r.changes_bound, "preference_finished"_a = r.preference_finished,
+                  "candidates"_a = r.candidates, "uncovered"_a = r.uncovered, "explanations"_a = r.explanations);
 }
 
 void bind_result(py::module_& m) {
@@ -204,6 +212,9 @@ void bind_result(py::module_& m) {
       .def_readonly("lower_bound", &R::lower_bound, "Proven: no set of grippers costs less.")
       .def_readonly("changes", &R::changes, "How often the gripper changes from part to part.")
       .def_readonly("changes_bound", &R::changes_bound, "Proven: no set of the same cost needs fewer.")
+      .def_readonly("preference_finished", &R::preference_finished,
+                    "Of preferred_grippers: for every better segment of a part it is decided whether the set stays as "
+                    "good with it. False: max_nodes or the time limit ended first.")
       .def_readonly("candidates", &R::candidates, "Grippers chosen among, none doing only what another does.")
       .def_readonly("uncovered", &R::uncovered, "Parts that no gripper takes.")
       .def_readonly("explanations", &R::explanations, "One per uncovered part.")

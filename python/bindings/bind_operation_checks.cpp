@@ -80,7 +80,8 @@ void bind_overlap(py::module_& m) {
       .def_readonly("depth", &O::depth, "A point of one part's surface lies this deep in the other [m]; 0: nowhere.")
       .def_readonly("active", &O::active, "The moved part; '' where depth is 0.")
       .def_readonly("passive", &O::passive, "The other one.")
-      .def_readonly("before_end", &O::before_end, "The way that is left when it happens [m].")
+      .def_readonly("before_end", &O::before_end,
+                    "The way of the moved parts' middle that is left when it happens [m].")
       .def("__repr__", [](const O& o) {
         return o.depth == 0 ? std::string("OperationOverlap(none)")
                             : "OperationOverlap(" + o.active + " " + shown(o.depth) + " m in " + o.passive + ")";
@@ -104,7 +105,11 @@ void bind_operation_checks(py::module_& m) {
   bind_load(m);
   bind_overlap(m);
   m.def(
-      "free_gripper", [](const Given<Gripper>& gripper) { return free_gripper(taken(gripper, "gripper")); },
+      "free_gripper",
+      [](const Given<Gripper>& gripper) {
+        const Gripper g = taken(gripper, "gripper");
+        return interruptible([&] { return free_gripper(g); });
+      },
       "gripper"_a,
       "A gripper, read from its own files, on six joints that carry its base anywhere: x, y, z [m], then yaw, pitch, "
       "roll [rad]. The fingers' joint is \"finger_1_joint\".");

@@ -107,17 +107,20 @@ void bind_plan_result(py::module_& m) {
       });
   using R = PlanGrippersResult;
   py::class_<R>(m, "PlanGrippersResult", "The grippers of an assembly, and how they were come by.")
-      .def_readonly("outcome", &R::outcome,
-                    "`solved`: each operation has a gripper that was rehearsed, and the set is proven; `infeasible`: "
-                    "an operation "
-                    "has no grasp to try, or its parts stand in each other (missing), or no drive takes it (set); "
-                    "`not_found`: no grasp that was tried goes through an operation, or a rehearsal met something; "
-                    "`stopped`; else as the set's.")
+      .def_readonly(
+          "outcome", &R::outcome,
+          "`solved`: each operation has a gripper that was rehearsed, and the set is proven; `infeasible`: "
+          "an operation "
+          "has no grasp to try, or its parts stand in each other (missing), or no drive takes it (set); "
+          "`not_found`: no grasp that was tried goes through an operation, or a rehearsal met something, or a "
+          "chosen gripper's pads slip; `stopped`; else as the set's.")
       .def_readonly("parts", &R::parts, "The parts that are moved, by name.")
       .def_readonly("fates", &R::fates, "Every segment of what is moved, in every operation.")
       .def_readonly("requirements", &R::requirements, "One per grasp kept; `part` is the operation's name.")
       .def_readonly("grasps", &R::grasps, "One per requirement, in the frame of the active subassembly.")
-      .def_readonly("holdings", &R::holdings, "One per requirement; empty where nothing is asked of holding.")
+      .def_readonly("holdings", &R::holdings,
+                    "One per requirement, of those chosen with their gripper's real pads; empty where nothing is asked "
+                    "of holding.")
       .def_readonly("missing", &R::missing, "Operations that cannot be done, each with the reasons.")
       .def_readonly("help", &R::help, "Single changes each of which gives an operation its grasp.")
       .def_readonly("set", &R::set, "The least set; None when something is missing.")
@@ -168,8 +171,10 @@ void bind_plan_grippers(py::module_& m) {
          const Given<std::vector<GripperActuator>>& actuators, const py::kwargs& keywords) {
         const auto options = read_options(plan_grippers_fields(), keywords, "segment_grasps");
         const auto drives = taken(actuators, "actuators", "GripperActuator");
-        return segment_grasps(taken(part, "part"), taken(segment, "segment"), taken(primitive, "primitive"), drives,
-                              options);
+        const PlacedMesh placed = taken(part, "part");
+        const MeshSegment cut = taken(segment, "segment");
+        const FittedPrimitive fitted = taken(primitive, "primitive");
+        return interruptible([&] { return segment_grasps(placed, cut, fitted, drives, options); });
       },
       "part"_a, "segment"_a, "primitive"_a, "actuators"_a,
       ("The grasps that plan_grippers tries of a segment, in the frame of the active subassembly; the palm is as wide "

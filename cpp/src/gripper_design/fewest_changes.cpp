@@ -43,6 +43,23 @@ class Search {
     return out;
   }
 
+  /// The first choice found that is as good as `limit`; sets nodes() and complete().
+  std::optional<GripperChoice> as_good_as(const GripperChoice& limit) {
+    // Only what beats this is taken: as much in all, with one change more.
+    best_.gripper_cost = limit.gripper_cost - options_.change_cost;
+    best_.changes = limit.changes + 1;
+    bounded_ = first_suffices_ = true;
+    Bits all(count()), uncovered(parts());
+    for (int g = 0; g < count(); ++g) all.set(g);
+    for (int p = 0; p < parts(); ++p) uncovered.set(p);
+    branch(Bits(count()), all, uncovered, 0);
+    if (best_.of_part.empty()) return std::nullopt;
+    return best_;
+  }
+
+  int nodes() const { return nodes_; }
+  bool complete() const { return complete_; }
+
  private:
   int count() const { return static_cast<int>(candidates_.size()); }
   int parts() const { return static_cast<int>(takers_.size()); }
@@ -102,8 +119,9 @@ class Search {
 
   bool take_if_better(const Bits& grippers) {
     const GripperChoice choice = choice_with(grippers);
-    if (!best_.of_part.empty() && no_better(choice.gripper_cost, choice.changes)) return false;
+    if (bounded_ && no_better(choice.gripper_cost, choice.changes)) return false;
     best_ = choice;
+    bounded_ = true;
     return true;
   }
 
@@ -119,7 +137,7 @@ class Search {
     while (better && !ended()) {
       better = false;
       const Bits current = best_set();
-      for (int out = current.first(); out >= 0 && !better; out = current.next(out + 1)) {
+      for (int out = current.first(); out >= 0 && !better && !ended(); out = current.next(out + 1)) {
         Bits rest(parts());
         for (int g = current.first(); g >= 0; g = current.next(g + 1)) {
           if (g != out) rest |= candidates_[g].parts;
@@ -170,7 +188,7 @@ class Search {
   bool ended() {
     if (nodes_ % 256 == 0 && (monitor_.stopped() || time_limit_.expired())) complete_ = false;
     if (nodes_ >= options_.max_nodes) complete_ = false;
-    return !complete_;
+    return !complete_ || (first_suffices_ && !best_.of_part.empty());
   }
 
   /// `allowed` holds `chosen` and what may be chosen beside.
@@ -193,7 +211,7 @@ class Search {
       with.set(g);
       still -= candidates_[g].parts;
       branch(with, allowed, still, chosen_cost + candidates_[g].cost);
-      if (!complete_) return;
+      if (!complete_ || (first_suffices_ && !best_.of_part.empty())) return;
       allowed.reset(g);  // What follows is without it.
     }
   }
@@ -232,6 +250,8 @@ class Search {
   const Monitor& monitor_;
   TimeLimit time_limit_;
   GripperChoice best_;
+  bool bounded_ = false;         // best_ says what there is to beat.
+  bool first_suffices_ = false;  // Whatever beats it ends the search.
   int nodes_ = 0;
   bool complete_ = true;
 };
@@ -242,6 +262,16 @@ FewestChanges fewest_changes(const std::vector<GripperCandidate>& candidates, in
                              const std::vector<int>& known, double least_gripper_cost,
                              const MinimalGrippersOptions& options, const Monitor& monitor) {
   return Search(candidates, part_count, least_gripper_cost, options, monitor).run(known);
+}
+
+ChoiceAsGood choice_as_good(const std::vector<GripperCandidate>& candidates, int part_count, const GripperChoice& limit,
+                            double least_gripper_cost, const MinimalGrippersOptions& options, const Monitor& monitor) {
+  Search search(candidates, part_count, least_gripper_cost, options, monitor);
+  ChoiceAsGood out;
+  out.found = search.as_good_as(limit);
+  out.nodes = search.nodes();
+  out.decided = out.found || search.complete();
+  return out;
 }
 
 }  // namespace mmgrasp::detail

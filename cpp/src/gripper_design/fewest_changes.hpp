@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "gripper_design/gripper_candidates.hpp"
@@ -25,5 +26,17 @@ struct FewestChanges {
 FewestChanges fewest_changes(const std::vector<GripperCandidate>& candidates, int part_count,
                              const std::vector<int>& known, double least_gripper_cost,
                              const MinimalGrippersOptions& options, const Monitor& monitor);
+
+/// An answer to whether grippers cost no more and change no more often than others.
+struct ChoiceAsGood {
+  std::optional<GripperChoice> found;
+  bool decided = false;  ///< Found, or proven that there is none.
+  int nodes = 0;         ///< Looked at by the search.
+};
+
+/// The same search for any choice whose cost (of grippers and changes) and number of changes are no higher than those
+/// of `limit`; it ends with the first one.
+ChoiceAsGood choice_as_good(const std::vector<GripperCandidate>& candidates, int part_count, const GripperChoice& limit,
+                            double least_gripper_cost, const MinimalGrippersOptions& options, const Monitor& monitor);
 
 }  // namespace mmgrasp::detail

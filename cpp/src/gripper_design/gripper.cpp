@@ -62,14 +62,41 @@ std::string vector_text(double x, double y, double z) {
   return number(x) + " " + number(y) + " " + number(z);
 }
 
+/// About the centre of mass, which lies at y = 0; axes as the link's.
 struct Inertia {
   double mass = 0, xx = 0, yy = 0, zz = 0;
+  double x = 0, z = 0;  // Centre of mass [m].
 };
 
-std::string inertial(const Inertia& i, double z) {
-  return "    <inertial>\n      <origin xyz=\"" + vector_text(0, 0, z) + "\" rpy=\"0 0 0\"/>\n      <mass value=\"" +
-         number(i.mass) + "\"/>\n      <inertia ixx=\"" + number(i.xx) + "\" ixy=\"0\" ixz=\"0\" iyy=\"" +
-         number(i.yy) + "\" iyz=\"0\" izz=\"" + number(i.zz) + "\"/>\n    </inertial>\n";
+/// A finger: its outline, symmetric about y = 0, drawn out along z.
+Inertia finger_inertia(const Gripper& g) {
+  const std::vector<Eigen::Vector2d> corners = outline(g);
+  double area = 0, first = 0;
+  Eigen::Vector2d second = Eigen::Vector2d::Zero();  // Moments of x^2 and y^2.
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Eigen::Vector2d &a = corners[i], &b = corners[(i + 1) % corners.size()];
+    const double twice = a.x() * b.y() - b.x() * a.y();
+    area += twice / 2;
+    first += twice * (a.x() + b.x()) / 6;
+    second += twice / 12 * (a.cwiseAbs2() + a.cwiseProduct(b) + b.cwiseAbs2());
+  }
+  const double l = g.finger_length, x = first / area;
+  const double about_z = second.x() / area - x * x, about_x = second.y() / area;
+  Inertia out;
+  out.mass = kDensity * area * l;
+  out.xx = out.mass * (about_x + l * l / 12);
+  out.yy = out.mass * (about_z + l * l / 12);
+  out.zz = out.mass * (about_x + about_z);
+  out.x = x;
+  out.z = l / 2;
+  return out;
+}
+
+std::string inertial(const Inertia& i) {
+  return "    <inertial>\n      <origin xyz=\"" + vector_text(i.x, 0, i.z) +
+         "\" rpy=\"0 0 0\"/>\n      <mass value=\"" + number(i.mass) + "\"/>\n      <inertia ixx=\"" + number(i.xx) +
+         "\" ixy=\"0\" ixz=\"0\" iyy=\"" + number(i.yy) + "\" iyz=\"0\" izz=\"" + number(i.zz) +
+         "\"/>\n    </inertial>\n";
 }
 
 std::string shape(const std::string& kind, const std::string& geometry, double z) {
@@ -87,11 +114,7 @@ std::string finger_name(int i) {
 
 std::string finger_urdf(const Gripper& g, int i) {
   const double turn = detail::kTwoPi * i / g.fingers, closed = g.min_opening / 2;
-  const double l = g.finger_length, w = g.finger_width, t = g.finger_thickness;
-  const double mass = kDensity * l * w * t;
-  const Inertia about_centre{mass, mass * (w * w + l * l) / 12, mass * (t * t + l * l) / 12,
-                             mass * (t * t + w * w) / 12};
-  std::string out = "  <link name=\"" + finger_name(i) + "\">\n" + inertial(about_centre, l / 2) +
+  std::string out = "  <link name=\"" + finger_name(i) + "\">\n" + inertial(finger_inertia(g)) +
                     both_shapes("<mesh filename=\"finger.stl\"/>", 0) + "  </link>\n";
   out += "  <joint name=\"" + finger_name(i) +
          "_joint\" type=\"prismatic\">\n    <parent link=\"base\"/>\n    <child link=\"" + finger_name(i) +
@@ -107,7 +130,7 @@ std::string urdf(const Gripper& g) {
   const double r = g.palm_radius(), h = g.palm_height, mass = kDensity * kPi * r * r * h;
   const double across = mass * (3 * r * r + h * h) / 12;
   std::string out = "<?xml version=\"1.0\"?>\n<robot name=\"" + g.name + "\">\n  <link name=\"base\">\n" +
-                    inertial({mass, across, across, mass * r * r / 2}, h / 2) +
+                    inertial({mass, across, across, mass * r * r / 2, 0, h / 2}) +
                     both_shapes("<cylinder radius=\"" + number(r) + "\" length=\"" + number(h) + "\"/>", h / 2) +
                     "  </link>\n";
   for (int i = 0; i < g.fingers; ++i) out += finger_urdf(g, i);
@@ -186,6 +209,10 @@ bool Gripper::holds(const SegmentRequirement& requirement) const {
 
 double Gripper::pad_length() const {
   return std::min(kLongestPad, finger_length);
+}
+
+double Gripper::pad_width() const {
+  return 2 * half_width(*this, 0);
 }
 
 double Gripper::palm_radius() const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -11,7 +12,7 @@ namespace mmgrasp::detail {
 /// Throws InvalidInput: no actuator, names missing or there twice, numbers out of range.
 void check_actuators(const std::vector<GripperActuator>& actuators);
 
-/// What a requirement leaves of opening and finger length once the margins are taken off.
+/// What a requirement leaves of opening and finger length once margins and clearance are taken off.
 struct RequiredRange {
   double lowest = 0, highest = 0;    ///< Both openings lie within the gripper's [m].
   double shortest = 0, longest = 0;  ///< The finger's length lies between them [m].
@@ -32,11 +33,15 @@ struct GripperCandidate {
 bool meets(const GripperActuator& actuator, double min_opening, double finger_length,
            const SegmentRequirement& requirement, const RequiredRange& range);
 
+/// Tells that work must end: a clock or a caller says so. Once true it stays true.
+using Ended = std::function<bool()>;
+
 /// Every gripper that matters, or those on P1's grid, without those that take no more than another one of no higher
-/// cost. `part_of` numbers the requirements' parts.
-std::vector<GripperCandidate> gripper_candidates(const std::vector<SegmentRequirement>& requirements,
-                                                 const std::vector<int>& part_of, int part_count,
-                                                 const std::vector<GripperActuator>& actuators,
-                                                 const MinimalGrippersOptions& options);
+/// cost; none when it was ended first. `part_of` numbers the requirements' parts.
+std::optional<std::vector<GripperCandidate>> gripper_candidates(const std::vector<SegmentRequirement>& requirements,
+                                                                const std::vector<int>& part_of, int part_count,
+                                                                const std::vector<GripperActuator>& actuators,
+                                                                const MinimalGrippersOptions& options,
+                                                                const Ended& ended);
 
 }  // namespace mmgrasp::detail

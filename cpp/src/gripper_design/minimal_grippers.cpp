@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <sstream>
 #include <stdexcept>
 
 #include "gripper_design/fewest_changes.hpp"
 #include "gripper_design/gripper_candidates.hpp"
+#include "gripper_design/gripper_set.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/detail/stopwatch.hpp"
 #include "mmgrasp/core/error.hpp"
@@ -44,17 +44,23 @@ std::string refusal(const SegmentRequirement& requirement, const std::vector<Gri
            " and longest_finger = " + millimetres(options.longest_finger) +
            (options.length_margin > 0 ? " with length_margin = " + millimetres(options.length_margin) : "");
   }
-  double widest = 0;
+  double widest = 0, longest_stroke = 0;
   for (const GripperActuator& a : actuators) {
-    if (a.fingers == requirement.fingers) widest = std::max(widest, a.max_opening);
+    if (a.fingers != requirement.fingers) continue;
+    widest = std::max(widest, a.max_opening);
+    longest_stroke = std::max(longest_stroke, a.stroke);
   }
   if (widest == 0) return "no actuator has " + fingers;
   if (range.highest > widest + 1e-9)
     return "it is " + millimetres(requirement.opening) + " wide, actuators with " + fingers + " open to " +
            millimetres(widest);
-  return options.grid_openings > 0
+  return options.grid_openings > 0 && range.highest - range.lowest <= longest_stroke + 1e-9
              ? "no gripper on the grid takes it: use a finer grid, or none"
-             : "opening_margin = " + millimetres(options.opening_margin) + " leaves too little of the stroke";
+             : "opening_margin = " + millimetres(options.opening_margin) +
+                   (2 * requirement.clearance > options.opening_margin
+                        ? " and a clearance of " + millimetres(requirement.clearance) + " leave"
+                        : " leaves") +
+                   " too little of the stroke";
 }
 
 /// An assembly with the candidate grippers for it: the cover of parts is chosen among these, checked, and explained.
@@ -62,20 +68,20 @@ class Problem {
  public:
   Problem(const std::vector<SegmentRequirement>& requirements, const std::vector<GripperActuator>& actuators,
           const MinimalGrippersOptions& options)
-      : requirements_(requirements), actuators_(actuators), options_(options) {
-    std::map<std::string, int> number;
-    for (const SegmentRequirement& r : requirements) {
-      const auto [place, is_new] = number.emplace(r.part, static_cast<int>(parts_.size()));
-      if (is_new) parts_.push_back(r.part);
-      part_of_.push_back(place->second);
-    }
-    candidates_ = gripper_candidates(requirements, part_of_, part_count(), actuators, options);
-  }
+      : requirements_(requirements), actuators_(actuators), options_(options), parts_(named_parts(requirements)) {}
 
-  MinimalGrippersResult solve(const Monitor& monitor) const {
+  MinimalGrippersResult solve(const Monitor& monitor) {
     const TimeLimit clock(options_.time_limit);
     MinimalGrippersResult result;
-    result.parts = parts_;
+    result.parts = parts_.names;
+    monitor.report("grippers to choose among", 0);
+    auto found_candidates = gripper_candidates(requirements_, parts_.of_requirement, part_count(), actuators_, options_,
+                                               [&] { return monitor.stopped() || clock.expired(); });
+    if (!found_candidates) {
+      result.outcome = monitor.stopped() ? Outcome::stopped : Outcome::timeout;
+      return result;
+    }
+    candidates_ = std::move(*found_candidates);
     result.candidates = static_cast<int>(candidates_.size());
     explain_uncovered(result);
     if (!result.uncovered.empty()) {
@@ -83,7 +89,7 @@ class Problem {
       return result;
     }
     monitor.report("least set of grippers", 0);
-    const SetCoverResult cover = solve_set_cover(set_cover_problem(), options_.time_limit, monitor);
+    const SetCoverResult cover = solve_set_cover(set_cover_problem(), std::max(clock.seconds_left(), 1e-3), monitor);
     if (cover.chosen.empty()) {
       result.outcome = cover.outcome;
       return result;
@@ -107,7 +113,7 @@ class Problem {
   }
 
  private:
-  int part_count() const { return static_cast<int>(parts_.size()); }
+  int part_count() const { return parts_.count(); }
 
   void explain_uncovered(MinimalGrippersResult& result) const {
     Bits covered(part_count());
@@ -116,13 +122,13 @@ class Problem {
       if (covered.test(p)) continue;
       std::string why;
       for (std::size_t r = 0; r < requirements_.size(); ++r) {
-        if (part_of_[r] != p) continue;
+        if (parts_.of_requirement[r] != p) continue;
         const std::string label =
             requirements_[r].segment.empty() ? "" : "segment '" + requirements_[r].segment + "': ";
         why += (why.empty() ? "" : "; ") + label + refusal(requirements_[r], actuators_, options_);
       }
-      result.uncovered.push_back(parts_[p]);
-      result.explanations.push_back("part '" + parts_[p] + "': " + why);
+      result.uncovered.push_back(parts_.names[p]);
+      result.explanations.push_back("part '" + parts_.names[p] + "': " + why);
     }
   }
 
@@ -140,79 +146,25 @@ class Problem {
   /// The first requirement of a part that a candidate meets.
   int met_by(const GripperCandidate& candidate, int part) const {
     for (std::size_t r = 0; r < requirements_.size(); ++r) {
-      if (part_of_[r] == part && meets(actuators_[candidate.actuator], candidate.min_opening, candidate.finger_length,
-                                       requirements_[r], required_range(requirements_[r], options_)))
+      if (parts_.of_requirement[r] == part &&
+          meets(actuators_[candidate.actuator], candidate.min_opening, candidate.finger_length, requirements_[r],
+                required_range(requirements_[r], options_)))
         return static_cast<int>(r);
     }
     throw std::logic_error("minimal_grippers: a part without its gripper");
   }
 
   void fill(const GripperChoice& choice, MinimalGrippersResult& result) const {
-    std::map<int, int> place;  // Candidate to its place in the result.
-    std::vector<int> used;
-    for (int p = 0; p < part_count(); ++p) {
-      const auto [at, is_new] = place.emplace(choice.of_part[p], static_cast<int>(used.size()));
-      if (is_new) used.push_back(choice.of_part[p]);
-      result.gripper_of_part.push_back(at->second);
-      result.requirement_of_part.push_back(met_by(candidates_[choice.of_part[p]], p));
-      result.changes += p > 0 && result.gripper_of_part[p] != result.gripper_of_part[p - 1];
-    }
-    double gripper_cost = 0;
-    for (std::size_t g = 0; g < used.size(); ++g) {
-      gripper_cost += candidates_[used[g]].cost;
-      result.grippers.push_back(gripper_for(candidates_[used[g]], static_cast<int>(g), result));
-    }
-    result.cost = gripper_cost + options_.change_cost * result.changes;
-    check_answer(result);
-  }
-
-  /// The candidate with its stroke set evenly about what it takes, and its fingers as short as that allows.
-  Gripper gripper_for(const GripperCandidate& candidate, int index, const MinimalGrippersResult& result) const {
-    const GripperActuator& actuator = actuators_[candidate.actuator];
-    Gripper gripper;
-    gripper.name = "gripper_" + std::to_string(index + 1);
-    gripper.actuator = actuator.name;
-    gripper.fingers = actuator.fingers;
-    gripper.min_opening = candidate.min_opening;
-    gripper.finger_length = candidate.finger_length;
-    gripper.finger_width = options_.finger_width;
-    gripper.finger_thickness = options_.finger_thickness;
-    if (options_.grid_openings == 0) {
-      double narrowest = kInfinity, widest = 0;
-      gripper.finger_length = options_.shortest_finger;
-      for (int p = 0; p < part_count(); ++p) {
-        if (result.gripper_of_part[p] != index) continue;
-        const SegmentRequirement& r = requirements_[result.requirement_of_part[p]];
-        narrowest = std::min(narrowest, r.opening);
-        widest = std::max(widest, r.opening);
-        gripper.finger_length = std::max(gripper.finger_length, required_range(r, options_).shortest);
-      }
-      gripper.min_opening =
-          std::max(0.0, std::min((narrowest + widest - actuator.stroke) / 2, actuator.max_opening - actuator.stroke));
-    }
-    gripper.max_opening = gripper.min_opening + actuator.stroke;
-    return gripper;
-  }
-
-  /// Holds the answer against (5.2) once more, part by part.
-  void check_answer(const MinimalGrippersResult& result) const {
-    for (int p = 0; p < part_count(); ++p) {
-      const SegmentRequirement& r = requirements_[result.requirement_of_part[p]];
-      const Gripper& g = result.grippers[result.gripper_of_part[p]];
-      const double opening = options_.opening_margin, length = options_.length_margin;
-      const bool kept = g.holds(r) && r.part == parts_[p] && r.opening + opening <= g.max_opening + 1e-8 &&
-                        std::max(0.0, r.opening - opening) >= g.min_opening - 1e-8 &&
-                        r.min_finger_length + length <= g.finger_length + 1e-8 &&
-                        g.finger_length <= r.max_finger_length - length + 1e-8;
-      if (!kept) throw std::logic_error("minimal_grippers: '" + g.name + "' does not hold '" + r.name() + "'");
-    }
+    std::vector<int> requirement_of_part;
+    for (int p = 0; p < part_count(); ++p) requirement_of_part.push_back(met_by(candidates_[choice.of_part[p]], p));
+    write_gripper_set({requirements_, actuators_, options_}, parts_.names, candidates_, choice.of_part,
+                      requirement_of_part, result);
   }
 
   const std::vector<SegmentRequirement>& requirements_;
   const std::vector<GripperActuator>& actuators_;
   const MinimalGrippersOptions& options_;
-  std::vector<std::string> parts_;
-  std::vector<int> part_of_;  // Part of each requirement.
+  NamedParts parts_;
   std::vector<GripperCandidate> candidates_;
 };
 

@@ -7,6 +7,7 @@
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/limits.hpp"
+#include "mmgrasp/grasp/detail/motion_looks.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -51,7 +52,8 @@ OperationLoad operation_load(const AssemblyOperation& operation, const HoldingRe
   for (const Pose& pose : operation.motion)
     load.weights.push_back(pose.linear().transpose() * Vector3d(0, 0, -load.mass * kGravity));
   if (operation.insertion_force > 0) {
-    const Vector3d way = operation.motion.back().translation() - operation.motion.end()[-2].translation();
+    const Vector3d middle = detail::middle_of(operation.active);
+    const Vector3d way = detail::MotionPiece(operation.motion.end()[-2], operation.motion.back(), middle).way();
     load.resistance = operation.motion.back().linear().transpose() * (-operation.insertion_force * way.normalized());
   }
   load.hole = operation.hole.value_or(load.centre);

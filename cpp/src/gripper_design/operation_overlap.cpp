@@ -7,11 +7,11 @@
 #include <optional>
 #include <vector>
 
-#include "gripper_design/motion_looks.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/core/random.hpp"
 #include "mmgrasp/geometry/distance_field.hpp"
+#include "mmgrasp/grasp/detail/motion_looks.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -107,10 +107,11 @@ OperationOverlap operation_overlap(const AssemblyOperation& operation, double al
   Overlaps overlaps(operation);
   const OperationOverlap at_end = overlaps.at(operation.motion.back());
   if (at_end.depth > allowed) return at_end;
-  const Poses looks = detail::motion_looks(operation.motion, kStep, kTurn);
+  const Eigen::Vector3d middle = detail::middle_of(operation.active);
+  const Poses looks = detail::motion_looks(operation.motion, middle, kStep, kTurn);
   double way = 0;
   for (std::size_t i = looks.size() - 1; i-- > 0 && !monitor.stopped();) {
-    way += (looks[i + 1].translation() - looks[i].translation()).norm();
+    way += (looks[i + 1] * middle - looks[i] * middle).norm();
     OperationOverlap found = overlaps.at(looks[i]);
     if (found.depth <= allowed) continue;
     found.before_end = way;

@@ -9,6 +9,7 @@
 #include "gripper_design/gripper_candidates.hpp"
 #include "gripper_design/segment_judgement.hpp"
 #include "mmgrasp/core/detail/near_name.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/core/parallel.hpp"
@@ -20,6 +21,8 @@ namespace mmgrasp {
 namespace {
 
 using namespace detail;
+
+constexpr double kLeastPad = 1e-6;  // Narrower ones are edges [m].
 
 std::string millimetres(double length) {
   std::ostringstream out;
@@ -159,7 +162,9 @@ class Planning {
     result_.set =
         preferred_grippers(result_.requirements, values_of(ranks_), actuators_, set_options(options_), monitor_);
     result_.outcome = result_.set->outcome;
-    if (!result_.set->grippers.empty()) rehearse();
+    if (result_.set->grippers.empty()) return std::move(result_);
+    if (options_.holding) judge_real_pads();
+    rehearse();
     return std::move(result_);
   }
 
@@ -257,7 +262,7 @@ class Planning {
       return;
     }
     std::optional<OperationLoad> load;
-    if (options_.holding) load = operation_load(operation, *options_.holding);
+    if (options_.holding) load = loads_[operation.name] = operation_load(operation, *options_.holding);
     const Judgement by{operation, actuators_, options_, load, keep_off_};
     const std::size_t first = result_.fates.size(), before = result_.requirements.size();
     Remedy remedy;
@@ -291,7 +296,8 @@ class Planning {
     for (FreeGrasp& f : found) {
       fate.requirements.push_back(static_cast<int>(result_.requirements.size()));
       result_.requirements.push_back({fate.step, fate.part + "/" + fate.name, fate.fingers,
-                                      1e-6 * std::round(1e6 * f.grasp.opening), f.lengths.shortest, f.lengths.longest});
+                                      1e-6 * std::round(1e6 * f.grasp.opening), f.lengths.shortest, f.lengths.longest,
+                                      f.grasp.clearance});
       result_.grasps.push_back(std::move(f.grasp));
       if (options_.holding) result_.holdings.push_back(f.held);
       ranks_.push_back(f.rank);
@@ -312,22 +318,80 @@ class Planning {
     const auto help = [&](const std::string& what) { result_.help.push_back(operation.name + ": " + what); };
     if (remedy.longest_finger >= 0) help("fingers of " + rounded(remedy.longest_finger, 1) + " would do");
     if (remedy.shortest_finger > 0) help("fingers as short as " + rounded(remedy.shortest_finger, -1) + " would do");
+    if (remedy.min_contact > 0) help("a min_contact of " + rounded(remedy.min_contact, -1) + " would do");
     for (const auto& [fingers, drive] : remedy.drives)
       help("a drive with " + std::to_string(fingers) + " fingers, a stroke of " + rounded(drive.stroke, 1) +
            " and an opening of up to " + rounded(drive.max_opening, 1) + " would do");
   }
 
-  void rehearse() {
+  /// Grasps were judged with pads as wide as fingers may be: now with those of the grippers that were chosen. Pads of
+  /// centric fingers are the wider the less these close, which is made use of where a part would slip.
+  void judge_real_pads() {
+    MinimalGrippersResult& set = *result_.set;
+    for (std::size_t g = 0; g < set.grippers.size(); ++g) {
+      if (slipping(g)) close_less(g);
+    }
+    for (std::size_t i = 0; i < operations_.size(); ++i) {
+      const std::size_t taken = set.requirement_of_part[i];
+      result_.grasps[taken] = with_real_pad(i);
+      result_.holdings[taken] = held_load(result_.grasps[taken], loads_.at(operations_[i].name));
+    }
+  }
+
+  AssemblyGrasp with_real_pad(std::size_t operation) const {
     const MinimalGrippersResult& set = *result_.set;
+    AssemblyGrasp grasp = result_.grasps[set.requirement_of_part[operation]];
+    const double width = set.grippers[set.gripper_of_part[operation]].pad_width();
+    grasp.contact_width = std::min(grasp.contact_width, std::max(width, kLeastPad));
+    return grasp;
+  }
+
+  bool slips(std::size_t operation) const {
+    const HeldLoad held = held_load(with_real_pad(operation), loads_.at(operations_[operation].name));
+    return held.safety < options_.holding->least_safety;
+  }
+
+  bool slipping(std::size_t gripper) const {
+    for (std::size_t i = 0; i < operations_.size(); ++i)
+      if (result_.set->gripper_of_part[i] == static_cast<int>(gripper) && slips(i)) return true;
+    return false;
+  }
+
+  /// Mounts a gripper's fingers as wide apart as the margins of what it takes let it.
+  void close_less(std::size_t gripper) {
+    MinimalGrippersResult& set = *result_.set;
+    Gripper& g = set.grippers[gripper];
+    const double stroke = g.max_opening - g.min_opening;
+    double lowest = kInfinity;
+    for (std::size_t i = 0; i < operations_.size(); ++i) {
+      if (set.gripper_of_part[i] != static_cast<int>(gripper)) continue;
+      const SegmentRequirement& r = result_.requirements[set.requirement_of_part[i]];
+      lowest = std::min(lowest, required_range(r, set_options(options_)).lowest);
+    }
+    for (const GripperActuator& a : actuators_)
+      if (a.name == g.actuator) lowest = std::min(lowest, a.max_opening - a.stroke);
+    g.min_opening = std::max(g.min_opening, lowest);
+    g.max_opening = g.min_opening + stroke;
+  }
+
+  /// What became of an operation with the gripper chosen for it.
+  std::string gone_through(std::size_t operation) const {
+    const MinimalGrippersResult& set = *result_.set;
+    const Gripper& gripper = set.grippers[set.gripper_of_part[operation]];
+    if (options_.holding && slips(operation))
+      return "pads slip: those of " + gripper.name + ", " + millimetres(gripper.pad_width()) +
+             " wide, do not hold weight and insertion";
+    return rehearse_operation(gripper, result_.grasps[set.requirement_of_part[operation]], operations_[operation]);
+  }
+
+  void rehearse() {
     result_.met.resize(operations_.size());
     Monitor silent;
     silent.stop = monitor_.stop;
-    const auto work = [&](std::size_t i, int) {
-      result_.met[i] = rehearse_operation(set.grippers[set.gripper_of_part[i]],
-                                          result_.grasps[set.requirement_of_part[i]], operations_[i]);
-    };
+    const auto work = [&](std::size_t i, int) { result_.met[i] = gone_through(i); };
     if (!parallel_for(operations_.size(), options_.threads, work, monitor_, "rehearsal")) {
       result_.outcome = Outcome::stopped;
+      result_.met.clear();  // What was not gone through has not met nothing.
       return;
     }
     const bool met = std::any_of(result_.met.begin(), result_.met.end(), [](const auto& m) { return !m.empty(); });
@@ -342,7 +406,8 @@ class Planning {
   std::map<std::string, SurfacePieces> keep_off_;
   std::set<std::pair<std::string, int>> untouchable_;
   std::vector<GraspRank> ranks_;
-  bool impossible_ = false;  // Some operation, whatever grasps are tried.
+  std::map<std::string, OperationLoad> loads_;  // Keys are operations; only where holding is asked.
+  bool impossible_ = false;                     // Some operation, whatever grasps are tried.
   PlanGrippersResult result_;
 };
 

@@ -7,9 +7,10 @@
 #include <map>
 #include <vector>
 
-#include "gripper_design/motion_looks.hpp"
 #include "mmgrasp/collision/checker.hpp"
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/grasp/detail/motion_looks.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -97,7 +98,7 @@ std::string rehearse_operation(const Gripper& gripper, const AssemblyGrasp& gras
   const double held = std::min((grasp.opening - gripper.min_opening) / 2 + kOff, stroke);
   const double opened = std::min(held + grasp.clearance, stroke);
   Poses approach, way, retreat;
-  const Poses moves = detail::motion_looks(operation.motion, kStep, kTurn);
+  const Poses moves = detail::motion_looks(operation.motion, detail::middle_of(operation.active), kStep, kTurn);
   for (const Pose& move : moves) way.push_back(move * T_active_base);
   for (double back = 0; back < kRetreat; back += kStep) {
     Pose away = Pose::Identity();
@@ -119,6 +120,7 @@ std::string rehearse_operation(const Gripper& gripper, const AssemblyGrasp& gras
     const Eigen::VectorXd fingers = group.robot().values({{"finger_1_joint", std::max(stage.joint, 0.0)}});
     CollisionChecker checker(group.with_reference(fingers), world_of(stage.parts));
     for (const Pose& pose : stage.poses) {
+      detail::throw_if_interrupted();
       const Eigen::VectorXd q = configuration(pose);
       if (checker.is_free(q)) continue;
       const Contact contact = checker.first_contact(q).value();

@@ -16,6 +16,8 @@ constexpr double kPalmMargin = 0.005;   // The palm reaches beyond the open fing
 constexpr double kPad = 0.02;           // Length of a pad along the approach [m].
 constexpr double kAnyOpening = 2.0;     // [m]
 constexpr double kLeastStroke = 0.001;  // [m]
+constexpr double kSameOpening = 2e-5;   // Rough faces give each grasp an opening of its own: alike within this [m].
+constexpr double kLeastContact = 5e-4;  // Thinner segments are not told to be held by less contact [m].
 
 std::string millimetres(double length) {
   std::ostringstream out;
@@ -87,8 +89,9 @@ Tried try_grasp(const Judgement& by, const AssemblyGrasp& grasp, const SurfacePi
 }
 
 bool held_by_another(const FreeGrasp& f, const FreeGrasp& other) {
-  return std::abs(other.grasp.opening - f.grasp.opening) < 1e-6 && other.lengths.shortest <= f.lengths.shortest &&
-         other.lengths.longest >= f.lengths.longest && other.rank <= f.rank;
+  return std::abs(other.grasp.opening - f.grasp.opening) < kSameOpening &&
+         other.lengths.shortest <= f.lengths.shortest && other.lengths.longest >= f.lengths.longest &&
+         other.rank <= f.rank;
 }
 
 std::vector<FreeGrasp> undominated(std::vector<FreeGrasp> found) {
@@ -147,20 +150,62 @@ std::vector<Tried> try_all(const Judgement& by, const std::vector<AssemblyGrasp>
   return out;
 }
 
+/// Stroke kept free above a part [m].
+double kept_above(double clearance, const PlanGrippersOptions& options) {
+  return std::max(options.opening_margin, 2 * clearance);
+}
+
+double longest_stroke(const std::vector<GripperActuator>& drives) {
+  double out = 0;
+  for (const GripperActuator& a : drives) out = std::max(out, a.stroke);
+  return out;
+}
+
 /// The drive of least opening, not at hand, by which a segment would be taken.
 void note_drive(const Judgement& by, const PlacedMesh& part, const MeshSegment& segment,
                 const FittedPrimitive& primitive, const SurfacePieces& keep_off, int fingers, Remedy& remedy,
                 const Monitor& monitor) {
-  GripperActuator drive{"", fingers, std::max(2 * (by.options.clearance + by.options.opening_margin), kLeastStroke)};
+  const double above = kept_above(by.options.clearance, by.options);
+  GripperActuator drive{"", fingers, std::max(above + by.options.opening_margin, kLeastStroke)};
   for (const Tried& t : try_all(by, segment_grasps(part, segment, primitive, {drive}, by.options), keep_off, monitor)) {
     if (!t.fell_by.empty()) continue;
-    drive.max_opening = std::max(t.found.grasp.opening + by.options.opening_margin, drive.stroke);
+    drive.max_opening = std::max(t.found.grasp.opening + above, drive.stroke);
     const auto [place, is_new] = remedy.drives.emplace(fingers, drive);
     if (!is_new && drive.max_opening < place->second.max_opening) place->second = drive;
   }
 }
 
+/// Whether pads could be put at a segment if they need not overlap it by `min_contact`; by how much they then may is
+/// noted where something goes through the operation.
+bool too_thin(const Judgement& by, const PlacedMesh& part, const MeshSegment& segment, const FittedPrimitive& primitive,
+              const std::vector<GripperActuator>& drives, const SurfacePieces& keep_off, Remedy& remedy,
+              const Monitor& monitor) {
+  PlanGrippersOptions thin = by.options;
+  thin.min_contact = std::min(kLeastContact, by.options.min_contact);
+  const std::vector<AssemblyGrasp> grasps = segment_grasps(part, segment, primitive, drives, thin);
+  const Judgement judgement{by.operation, by.actuators, thin, by.load, by.keep_off};
+  for (const Tried& t : try_all(judgement, grasps, keep_off, monitor))
+    if (t.fell_by.empty()) remedy.min_contact = std::max(remedy.min_contact, t.found.grasp.contact_length);
+  return !grasps.empty();
+}
+
+/// Why there is no grasp to try, and what would help.
+std::string nothing_to_try(const Judgement& by, const PlacedMesh& part, const MeshSegment& segment,
+                           const FittedPrimitive& primitive, const std::vector<GripperActuator>& drives,
+                           const SurfacePieces& keep_off, int fingers, Remedy& remedy, const Monitor& monitor) {
+  if (!drives.empty() && too_thin(by, part, segment, primitive, drives, keep_off, remedy, monitor))
+    return "too thin: pads would overlap it by less than min_contact = " + millimetres(by.options.min_contact);
+  note_drive(by, part, segment, primitive, keep_off, fingers, remedy, monitor);
+  if (drives.empty()) return "no actuator has " + std::to_string(fingers) + " fingers";
+  return fingers == 2 ? "no pair of opposite faces that an actuator opens wide enough for"
+                      : "wider than any actuator opens";
+}
+
 }  // namespace
+
+double kept_clearance(const std::vector<GripperActuator>& drives, const PlanGrippersOptions& options) {
+  return std::clamp((longest_stroke(drives) - options.opening_margin) / 2, 0.0, options.clearance);
+}
 
 int fingers_for(PrimitiveKind kind) {
   if (kind == PrimitiveKind::box) return 2;
@@ -189,15 +234,9 @@ std::vector<FreeGrasp> judge_segment(const Judgement& by, const PlacedMesh& part
   fate.free = static_cast<int>(found.size());
   if (!found.empty()) return undominated(std::move(found));
   note_remedies(all, remedy);
-  if (drives.empty()) {
-    fate.refused = "no actuator has " + std::to_string(fate.fingers) + " fingers";
-  } else if (!all.empty()) {
-    fate.refused = main_cause(all);
-  } else {
-    fate.refused = fate.fingers == 2 ? "no pair of opposite faces that an actuator opens wide enough for"
-                                     : "wider than any actuator opens";
-  }
-  if (all.empty()) note_drive(by, part, segment, primitive, keep_off, fate.fingers, remedy, monitor);
+  fate.refused = !all.empty()
+                     ? main_cause(all)
+                     : nothing_to_try(by, part, segment, primitive, drives, keep_off, fate.fingers, remedy, monitor);
   return {};
 }
 
@@ -214,8 +253,7 @@ std::vector<AssemblyGrasp> segment_grasps(const PlacedMesh& part, const MeshSegm
   const int fingers = fingers_for(primitive.kind);
   const std::vector<GripperActuator> drives = with_fingers(actuators, fingers);
   if (fingers == 0 || drives.empty()) return {};
-  double stroke = 0;
-  for (const GripperActuator& a : drives) stroke = std::max(stroke, a.stroke);
+  const double stroke = longest_stroke(drives);
   AssemblyGraspOptions choice;
   choice.directions = options.directions;
   choice.min_contact = options.min_contact;
@@ -223,12 +261,13 @@ std::vector<AssemblyGrasp> segment_grasps(const PlacedMesh& part, const MeshSegm
   choice.pad_length = std::max(kPad, options.min_contact);
   choice.finger_width = options.finger_width;
   choice.finger_thickness = options.finger_thickness;
-  choice.clearance = std::min(options.clearance, stroke / 2);
-  choice.max_opening = std::max(widest(drives) - options.opening_margin, 1e-6);
+  choice.clearance = kept_clearance(drives, options);
+  choice.max_opening = std::max(widest(drives) - kept_above(choice.clearance, options), 1e-6);
   const double half = primitive.size.z() / 2;
   std::vector<AssemblyGrasp> grasps =
       fingers == 2 ? jaw_grasps(*part.mesh, segment.faces, choice)
-                   : centric_grasps({primitive.T_mesh_primitive, primitive.size.x(), -half, half}, choice);
+                   : centric_grasps(*part.mesh, segment.faces,
+                                    {primitive.T_mesh_primitive, primitive.size.x(), -half, half}, choice);
   for (AssemblyGrasp& grasp : grasps) {
     const double reach = (grasp.opening + stroke) / 2 + grasp.thickness;
     grasp.T_active_tool = part.pose * grasp.T_active_tool;

@@ -27,6 +27,7 @@ struct FreeGrasp {
 struct Remedy {
   static constexpr double kNone = -1;
   double longest_finger = kNone, shortest_finger = kNone;  ///< A limit that would have to be this [m].
+  double min_contact = kNone;                              ///< Pads would have to overlap by no more than this [m].
   std::map<int, GripperActuator> drives;                   ///< A drive that is not at hand, by number of fingers.
 };
 
@@ -38,6 +39,10 @@ struct Judgement {
   const std::optional<OperationLoad>& load;
   const std::map<std::string, SurfacePieces>& keep_off;  ///< Pieces by part, in its mesh's frame.
 };
+
+/// How far each finger opens with the longest of these drives: as far as asked, where the stroke allows that beside the
+/// margin below the part [m].
+double kept_clearance(const std::vector<GripperActuator>& drives, const PlanGrippersOptions& options);
 
 /// 2 for a box, 3 for a cylinder, 0 for what no gripper suits (P1 5.2.1).
 int fingers_for(PrimitiveKind kind);

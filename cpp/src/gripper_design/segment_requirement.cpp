@@ -19,6 +19,7 @@ void SegmentRequirement::check() const {
   require_not_negative(min_finger_length, "min_finger_length" + of, "m");
   require(max_finger_length >= min_finger_length, "max_finger_length" + of, max_finger_length,
           "must be at least min_finger_length [m]");
+  require_not_negative(clearance, "clearance" + of, "m");
 }
 
 }  // namespace mmgrasp

@@ -6349,12 +6349,17 @@ class SegmentRequirement:
     
         SegmentRequirement("sleeve", 0.0375, fingers=3, min_finger_length=0.0227)
     """
-    def __init__(self, part: str, opening: float, *, segment: str = '', fingers: int = 2, min_finger_length: float = 0.0, max_finger_length: float | None = None) -> None:
+    def __init__(self, part: str, opening: float, *, segment: str = '', fingers: int = 2, min_finger_length: float = 0.0, max_finger_length: float | None = None, clearance: float = 0.0) -> None:
         """
-        Part, opening [m], the segment's label, 2 or 3 fingers, limits of their length [m] (None: no upper one).
+        Part, opening [m], the segment's label, 2 or 3 fingers, limits of their length [m] (None: no upper one), how far each finger opens to let go [m].
         """
     def __repr__(self) -> str:
         ...
+    @property
+    def clearance(self) -> float:
+        """
+        Each finger opens by this to let go: twice as much is kept free above the opening [m].
+        """
     @property
     def fingers(self) -> int:
         """
@@ -6476,6 +6481,11 @@ class Gripper:
         Length of the pad along the approach [m].
         """
     @property
+    def pad_width(self) -> float:
+        """
+        Width of the pad across the approach: the finger's, or what three fingers that close leave of it [m].
+        """
+    @property
     def palm_height(self) -> float:
         """
         From the mounting face to the palm [m].
@@ -6576,6 +6586,11 @@ class MinimalGrippersResult:
     def parts(self) -> list[str]:
         """
         Names of the parts in the order of assembly.
+        """
+    @property
+    def preference_finished(self) -> bool:
+        """
+        Of preferred_grippers: for every better segment of a part it is decided whether the set stays as good with it. False: max_nodes or the time limit ended first.
         """
     @property
     def requirement_of_part(self) -> list[int]:
@@ -6774,7 +6789,7 @@ class OperationOverlap:
     @property
     def before_end(self) -> float:
         """
-        The way that is left when it happens [m].
+        The way of the moved parts' middle that is left when it happens [m].
         """
     @property
     def depth(self) -> float:
@@ -6919,7 +6934,7 @@ class PlanGrippersResult:
     @property
     def holdings(self) -> list[HeldLoad]:
         """
-        One per requirement; empty where nothing is asked of holding.
+        One per requirement, of those chosen with their gripper's real pads; empty where nothing is asked of holding.
         """
     @property
     def met(self) -> list[str]:
@@ -6934,7 +6949,7 @@ class PlanGrippersResult:
     @property
     def outcome(self) -> Outcome:
         """
-        `solved`: each operation has a gripper that was rehearsed, and the set is proven; `infeasible`: an operation has no grasp to try, or its parts stand in each other (missing), or no drive takes it (set); `not_found`: no grasp that was tried goes through an operation, or a rehearsal met something; `stopped`; else as the set's.
+        `solved`: each operation has a gripper that was rehearsed, and the set is proven; `infeasible`: an operation has no grasp to try, or its parts stand in each other (missing), or no drive takes it (set); `not_found`: no grasp that was tried goes through an operation, or a rehearsal met something, or a chosen gripper's pads slip; `stopped`; else as the set's.
         """
     @property
     def parts(self) -> dict[str, SegmentedPart]:

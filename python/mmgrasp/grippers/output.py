@@ -63,6 +63,7 @@ def result_to_dict(plan: GripperPlan) -> dict[str, Any]:
     out["lower_bound"] = result.lower_bound
     out["changes"] = result.changes
     out["changes_bound"] = result.changes_bound
+    out["preference_finished"] = result.preference_finished
     out["uncovered"] = result.uncovered
     out["explanations"] = result.explanations
     out["grippers"] = [g.to_dict() for g in result.grippers]
@@ -87,6 +88,7 @@ def _requirement(requirement: SegmentRequirement, grasp: AssemblyGrasp) -> dict[
         "opening": requirement.opening,
         "min_finger_length": requirement.min_finger_length,
         "max_finger_length": requirement.max_finger_length,
+        "clearance": requirement.clearance,
         "T_assembly_tips": np.asarray(grasp.T_active_tool).tolist(),
     }
 

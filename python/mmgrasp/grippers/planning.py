@@ -75,7 +75,8 @@ class GripperPlan:
     def solved(self) -> bool:
         """Every operation has a gripper that was rehearsed."""
         return (
-            self.result is not None
+            self.outcome in (Outcome.solved, Outcome.approximate)
+            and self.result is not None
             and not self.missing
             and not self.result.uncovered
             and not any(self.rehearsed.values())

@@ -373,5 +373,18 @@ TEST(FitPrimitives, RefusesLabelsThatDoNotFit) {
   EXPECT_THROW(fit_primitives(*mesh, std::vector<int>(mesh->triangles.size(), 0), {other}), InvalidInput);
 }
 
+TEST(FitPrimitives, NumbersThatNoFaceHasAreEmptySegments) {
+  const auto mesh = turned({{0.005, 0}, {0.005, 0.02}, {0.009, 0.02}, {0.009, 0.035}}, 32);
+  const std::vector<FittedPrimitive> fits = fit_primitives(*mesh, std::vector<int>(mesh->triangles.size(), 3));
+  ASSERT_EQ(fits.size(), 4U);
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_EQ(fits[k].kind, PrimitiveKind::box);
+    EXPECT_EQ(fits[k].size, Eigen::Vector3d::Zero());
+    EXPECT_EQ(fits[k].hull_volume, 0);
+    EXPECT_TRUE(fits[k].widths.empty());
+  }
+  EXPECT_GT(fits[3].size.minCoeff(), 0.01);
+}
+
 }  // namespace
 }  // namespace mmgrasp

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/random.hpp"
 
@@ -204,6 +205,97 @@ TEST(FingerLengthRange, AgreesWithDrawnPoints) {
   EXPECT_GT(open, 20);
   EXPECT_GT(blocked, 20);
   EXPECT_LT(grazed, 10);
+}
+
+/// A bar 0.3 m long, its middle where the file has it, turns by 90 degrees in place; it is held at its one end.
+AssemblyOperation turning_bar(const Eigen::Vector3d& middle) {
+  AssemblyOperation operation;
+  const Eigen::Vector3d half(0.15, 0.005, 0.005);
+  operation.active = {{"bar", box(middle - half, middle + half), Pose::Identity()}};
+  Pose turned = Pose::Identity();
+  turned.linear() = Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  turned.translation() = middle - turned.linear() * middle;
+  operation.motion = {turned, Pose::Identity()};
+  return operation;
+}
+
+AssemblyGrasp at_end_of_bar(const Eigen::Vector3d& middle) {
+  AssemblyGrasp grasp;
+  grasp.opening = 0.01;
+  grasp.T_active_tool = from_above(0);
+  grasp.T_active_tool.linear() =
+      grasp.T_active_tool.linear() * Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  grasp.T_active_tool.translation() += middle + Eigen::Vector3d(0.14, 0, 0);
+  return grasp;
+}
+
+PlacedMesh pin_at(const Eigen::Vector3d& place) {
+  return {"pin", box(place - Eigen::Vector3d(0.002, 0.002, 0.1), place + Eigen::Vector3d(0.002, 0.002, 0.2)),
+          Pose::Identity()};
+}
+
+TEST(FingerLengthRange, TurningPartsTakeTheGripperRoundTheirMiddle) {
+  for (const Eigen::Vector3d& middle : {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(0.3, 0.2, 0)}) {
+    AssemblyOperation operation = turning_bar(middle);
+    const AssemblyGrasp grasp = at_end_of_bar(middle);
+    const double half = std::sqrt(0.5);
+    operation.passive = {pin_at(middle + 0.14 * Eigen::Vector3d(half, half, 0))};  // on the arc
+    const FingerLengthRange blocked = finger_length_range(grasp, operation);
+    EXPECT_FALSE(blocked.free);
+    EXPECT_EQ(blocked.shortest_by + blocked.longest_by, "pin at the motionpin at the motion");
+    operation.passive = {pin_at(middle + Eigen::Vector3d(0.07, 0.07, 0))};  // on the chord, 41 mm inside of the arc
+    const FingerLengthRange free = finger_length_range(grasp, operation);
+    EXPECT_TRUE(free.free);
+    EXPECT_NEAR(free.shortest, 0.005, 2e-6);  // the bar itself
+    EXPECT_EQ(free.longest, std::numeric_limits<double>::infinity());
+  }
+}
+
+TEST(FingerLengthRange, NothingThatAFinerLookMeetsIsMissedOnATurn) {
+  Rng rng(5);
+  int bounded = 0;
+  for (int trial = 0; trial < 60; ++trial) {
+    const Eigen::Vector3d middle(rng.uniform(-0.2, 0.2), rng.uniform(-0.2, 0.2), 0);
+    AssemblyOperation operation = turning_bar(middle);
+    operation.motion[0].translation() += Eigen::Vector3d(rng.uniform(-0.05, 0.05), rng.uniform(-0.05, 0.05), 0);
+    AssemblyGrasp grasp = at_end_of_bar(middle);
+    grasp.palm_radius = 0.02;
+    const double turn = rng.uniform(0, M_PI / 2), radius = rng.uniform(0.1, 0.18), high = rng.uniform(0.01, 0.05);
+    const Eigen::Vector3d tip = middle + Eigen::Vector3d(radius * std::cos(turn), radius * std::sin(turn), high);
+    operation.passive = {{"needle", box(tip - Eigen::Vector3d(1e-5, 1e-5, 0.2), tip), Pose::Identity()}};
+    double under_palm = 0;
+    bool under_finger = false;
+    constexpr int kFine = 20000;
+    for (int k = 0; k <= kFine; ++k) {  // Worked out by hand: the middle straight, the turn even.
+      const double share = static_cast<double>(k) / kFine;
+      Pose at = Pose::Identity();
+      at.linear() = Eigen::AngleAxisd((1 - share) * M_PI / 2, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+      at.translation() = (1 - share) * (operation.motion[0] * middle) + share * middle - at.linear() * middle;
+      const Eigen::Vector3d seen = (at * grasp.T_active_tool).inverse() * tip;
+      if (seen.head<2>().norm() < grasp.palm_radius) under_palm = high;
+      under_finger = under_finger || (std::abs(seen.y()) < grasp.width / 2 && std::abs(seen.x()) > grasp.opening / 2 &&
+                                      std::abs(seen.x()) < grasp.opening / 2 + grasp.thickness);
+    }
+    const FingerLengthRange range = finger_length_range(grasp, operation, 0.01);  // Coarse: the margin must bear it.
+    if (under_palm > 0 && range.free) {
+      EXPECT_GE(range.shortest, under_palm) << trial;
+    }
+    if (under_finger) {
+      EXPECT_FALSE(range.free) << trial;
+    }
+    bounded += under_finger || under_palm > 0;
+  }
+  EXPECT_GT(bounded, 20);
+}
+
+TEST(FingerLengthRange, EndsWhenInterrupted) {
+  AssemblyOperation operation = turning_bar({0, 0, 0});
+  const Eigen::Vector3d beside(0.07, 0.07, 0);
+  operation.passive = {{"wall", ring(0.2, 0.21, -0.1, 0.1)}, pin_at(beside)};
+  CancelToken stop;
+  stop.stop();
+  const detail::InterruptionScope scope(stop);
+  EXPECT_THROW(finger_length_range(at_end_of_bar({0, 0, 0}), operation), detail::Interrupted);
 }
 
 TEST(FingerLengthRange, RefusesWhatCannotBe) {

@@ -85,6 +85,53 @@ TEST(Gripper, LoadedGripperOpensAsPromised) {
   }
 }
 
+double number_after(const std::string& text, const std::string& what) {
+  const std::size_t at = text.find(what);
+  EXPECT_NE(at, std::string::npos) << what;
+  return std::stod(text.substr(at + what.size()));
+}
+
+TEST(Gripper, InertialsAreThoseOfTheFingersMesh) {
+  constexpr double kDensity = 1240;
+  for (const Gripper& g : {Gripper{}, centric(0, 0.008), centric(0.004, 0.012), centric(0.1, 0.16)}) {
+    const auto mesh = g.finger_mesh();
+    // Tetrahedra from the origin: volume, first and second moments.
+    double volume = 0;
+    Eigen::Vector3d first = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
+    for (const auto& t : mesh->triangles) {
+      const Eigen::Vector3d &a = mesh->vertices[t[0]], &b = mesh->vertices[t[1]], &c = mesh->vertices[t[2]];
+      const double v = a.dot(b.cross(c)) / 6;
+      const Eigen::Vector3d sum = a + b + c;
+      volume += v;
+      first += v / 4 * sum;
+      second += v / 20 * (a * a.transpose() + b * b.transpose() + c * c.transpose() + sum * sum.transpose());
+    }
+    const Eigen::Vector3d centre = first / volume;
+    const Eigen::Matrix3d about = kDensity * (second - volume * centre * centre.transpose());
+    const std::string urdf = g.files().at("gripper.urdf");
+    const std::string finger = urdf.substr(urdf.find("<link name=\"finger_1\">"));
+    EXPECT_NEAR(number_after(finger, "mass value=\""), kDensity * volume, 1e-9);
+    EXPECT_NEAR(number_after(finger, "origin xyz=\""), centre.x(), 1e-9);
+    EXPECT_NEAR(centre.y(), 0, 1e-12);
+    EXPECT_NEAR(centre.z(), g.finger_length / 2, 1e-12);
+    EXPECT_NEAR(number_after(finger, "ixx=\""), about(1, 1) + about(2, 2), 1e-12);
+    EXPECT_NEAR(number_after(finger, "iyy=\""), about(0, 0) + about(2, 2), 1e-12);
+    EXPECT_NEAR(number_after(finger, "izz=\""), about(0, 0) + about(1, 1), 1e-12);
+  }
+}
+
+TEST(Gripper, PadsAreAsWideAsTheMeshHasThem) {
+  for (const double low : {0.0, 0.001, 0.004, 0.008, 0.02}) {
+    const Gripper g = centric(low, low + 0.008);
+    double widest = 0;
+    for (const Eigen::Vector3d& v : g.finger_mesh()->vertices)
+      if (v.x() < 1e-9) widest = std::max(widest, 2 * v.y());
+    EXPECT_NEAR(g.pad_width(), widest, 1e-12) << low;
+  }
+  EXPECT_EQ(Gripper{}.pad_width(), Gripper{}.finger_width);
+}
+
 TEST(Gripper, JawsAreReadAsAHand) {
   Gripper g;
   g.name = "jaws";

@@ -361,5 +361,153 @@ TEST(PreferredGrippers, CostNoMoreAndChangeNoMoreOftenThanTheLeastSet) {
   EXPECT_GT(bettered, 20);
 }
 
+TEST(PreferredGrippers, CostsInAnyUnitHaveTheSameAnswer) {
+  const std::vector<SegmentRequirement> requirements{segment("a", 2, 0.020), segment("a", 2, 0.090)};
+  for (const double unit : {1.0, 1e-12, 1e12}) {
+    const std::vector<GripperActuator> drives{{"cheap", 2, 0.01, 0.05, unit}, {"dear", 2, 0.01, 0.2, 3 * unit}};
+    const MinimalGrippersResult r = preferred_grippers(requirements, {1, 5}, drives);
+    EXPECT_NEAR(r.cost / unit, 1, 1e-9) << unit;
+    EXPECT_NEAR(r.lower_bound / unit, 1, 1e-9) << unit;
+    EXPECT_EQ(r.requirement_of_part, std::vector<int>{0}) << unit;
+    EXPECT_TRUE(r.preference_finished);
+  }
+}
+
+/// The best values, part by part, that sets as good as the least one allow: by solving the whole problem again for
+/// each.
+std::vector<double> values_by_solving_again(std::vector<SegmentRequirement> requirements, std::vector<double> values,
+                                            const std::vector<GripperActuator>& drives,
+                                            const MinimalGrippersOptions& options) {
+  const MinimalGrippersResult least = minimal_grippers(requirements, drives, options);
+  std::vector<double> out;
+  for (const std::string& part : least.parts) {
+    std::vector<int> ways;
+    for (std::size_t r = 0; r < requirements.size(); ++r)
+      if (requirements[r].part == part) ways.push_back(static_cast<int>(r));
+    std::stable_sort(ways.begin(), ways.end(), [&](int a, int b) { return values[a] > values[b]; });
+    for (const int way : ways) {
+      std::vector<SegmentRequirement> left;
+      std::vector<double> worth;
+      for (std::size_t r = 0; r < requirements.size(); ++r) {
+        if (requirements[r].part == part && static_cast<int>(r) != way) continue;
+        left.push_back(requirements[r]);
+        worth.push_back(values[r]);
+      }
+      const MinimalGrippersResult again = minimal_grippers(left, drives, options);
+      // The order of assembly stays: parts are first named in the same order.
+      if (again.grippers.empty() || again.cost > least.cost + 1e-9 || again.changes > least.changes) continue;
+      out.push_back(values[way]);
+      requirements = left;
+      values = worth;
+      break;
+    }
+  }
+  return out;
+}
+
+TEST(PreferredGrippers, AreAsGoodAsSolvingAgainForEverySegment) {
+  Rng rng(23);
+  int sums = 0;
+  for (int trial = 0; trial < 60; ++trial) {
+    std::vector<SegmentRequirement> requirements;
+    std::vector<double> values;
+    for (int p = 0; p < 7; ++p) {
+      for (int s = 0; s < 3; ++s) {
+        const double shortest = trial % 2 ? rng.uniform(0, 0.04) : 0.0;
+        requirements.push_back(segment(std::to_string(p), 2 + static_cast<int>(rng.index(2)), rng.uniform(0.01, 0.08),
+                                       shortest, trial % 2 ? shortest + rng.uniform(0.005, 0.05) : kInfinite));
+        values.push_back(rng.uniform(0, 1));
+      }
+    }
+    std::vector<GripperActuator> drives{{"jaws", 2, 0.020}, {"centric", 3, 0.015}};
+    if (trial % 3 == 1) drives[1].cost = 1.4;
+    MinimalGrippersOptions options;
+    options.change_cost = trial % 5 == 1 ? 0.3 : 0.0;
+    const MinimalGrippersResult best = preferred_grippers(requirements, values, drives, options);
+    ASSERT_EQ(best.outcome, Outcome::solved);
+    EXPECT_TRUE(best.preference_finished);
+    expect_complete(best, requirements);
+    const std::vector<double> wanted = values_by_solving_again(requirements, values, drives, options);
+    ASSERT_EQ(wanted.size(), best.parts.size());
+    for (std::size_t p = 0; p < wanted.size(); ++p)
+      EXPECT_EQ(values[best.requirement_of_part[p]], wanted[p]) << trial << " " << best.parts[p];
+    sums += best.changes;
+  }
+  EXPECT_GT(sums, 0);
+}
+
+TEST(PreferredGrippers, SayThatTheyAreNotFinished) {
+  Rng rng(1);
+  std::vector<SegmentRequirement> requirements;
+  std::vector<double> values;
+  for (int p = 0; p < 60; ++p) {
+    for (int s = 0; s < 4; ++s) {
+      requirements.push_back(segment(std::to_string(p), 2 + s % 2, rng.uniform(0.01, 0.2)));
+      values.push_back(rng.uniform(0, 1));
+    }
+  }
+  MinimalGrippersOptions options;
+  options.max_nodes = 3;
+  const std::vector<GripperActuator> drives{{"jaws", 2, 0.020}, {"centric", 3, 0.020}};
+  const MinimalGrippersResult one = preferred_grippers(requirements, values, drives, options);
+  EXPECT_FALSE(one.preference_finished);
+  expect_complete(one, requirements);
+  const MinimalGrippersResult two = preferred_grippers(requirements, values, drives, options);
+  EXPECT_EQ(one.requirement_of_part, two.requirement_of_part);
+  EXPECT_EQ(one.gripper_of_part, two.gripper_of_part);
+}
+
+TEST(MinimalGrippers, GridsReachWhatMarginsAskFor) {
+  const std::vector<SegmentRequirement> requirements{segment("a", 2, 0.02, 0.02, 0.03), segment("b", 2, 0.03, 0.025)};
+  MinimalGrippersOptions options;
+  options.grid_openings = 5;
+  options.grid_lengths = 3;
+  options.opening_margin = 0.001;
+  options.length_margin = 0.001;
+  const MinimalGrippersResult r = minimal_grippers(requirements, {{"jaws", 2, 0.02}}, options);
+  EXPECT_EQ(r.outcome, Outcome::solved);
+  expect_complete(r, requirements);
+  options.opening_margin = 0.011;
+  const MinimalGrippersResult none = minimal_grippers(requirements, {{"jaws", 2, 0.02}}, options);
+  ASSERT_EQ(none.outcome, Outcome::infeasible);
+  EXPECT_NE(none.explanations.at(0).find("opening_margin"), std::string::npos) << none.explanations[0];
+}
+
+TEST(MinimalGrippers, KeepTwiceTheClearanceAboveAPart) {
+  std::vector<SegmentRequirement> requirements{segment("a", 2, 0.020), segment("b", 2, 0.027)};
+  const std::vector<GripperActuator> jaws{{"jaws", 2, 0.010, 0.05}};
+  EXPECT_EQ(minimal_grippers(requirements, jaws).grippers.size(), 1u);
+  for (SegmentRequirement& r : requirements) r.clearance = 0.002;
+  const MinimalGrippersResult two = minimal_grippers(requirements, jaws);
+  ASSERT_EQ(two.grippers.size(), 2u);
+  for (int p = 0; p < 2; ++p)
+    EXPECT_GE(two.grippers[two.gripper_of_part[p]].max_opening, requirements[p].opening + 0.004 - 1e-9);
+  requirements[1].opening = 0.047;
+  EXPECT_EQ(minimal_grippers(requirements, jaws).uncovered, std::vector<std::string>{"b"});
+  requirements[1].clearance = -1;
+  EXPECT_THROW(minimal_grippers(requirements, jaws), InvalidInput);
+}
+
+TEST(MinimalGrippers, StopWhileGrippersToChooseAmongAreMade) {
+  Rng rng(1);
+  std::vector<SegmentRequirement> requirements;
+  for (int i = 0; i < 3000; ++i) {
+    const double shortest = rng.uniform(0, 0.05);
+    requirements.push_back(segment(std::to_string(i / 3), 2 + i % 2, rng.uniform(0.005, 0.2), shortest,
+                                   shortest + rng.uniform(0.005, 0.05)));
+  }
+  Monitor monitor;
+  std::vector<std::string> stages;
+  monitor.progress = [&](const std::string& stage, double) {
+    stages.push_back(stage);
+    monitor.stop.stop();
+  };
+  const MinimalGrippersResult r =
+      minimal_grippers(requirements, {{"jaws", 2, 0.02}, {"centric", 3, 0.02}}, {}, monitor);
+  EXPECT_EQ(r.outcome, Outcome::stopped);
+  EXPECT_EQ(stages, std::vector<std::string>{"grippers to choose among"});
+  EXPECT_EQ(r.candidates, 0);
+}
+
 }  // namespace
 }  // namespace mmgrasp

@@ -51,6 +51,22 @@ TEST(OperationOverlap, APegInItsHoleIsFreeAndInASmallerOneIsNot) {
   EXPECT_NEAR(operation_overlap(o).depth, 0.001, 2e-5);  // 64 corners
 }
 
+TEST(OperationOverlap, PartsFarFromTheirFilesOriginTurnInPlace) {
+  AssemblyOperation o;
+  o.active = {{"bar", block({0.05, 0.01, 0.01}), at(1, 0, 0)}};
+  o.passive = {{"wall", block({0.002, 0.1, 0.02}), at(0.94, 0, 0)}};  // 7 mm beside the circle that it turns in
+  Pose turned_about_middle = Pose::Identity();
+  turned_about_middle.linear() = Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  turned_about_middle.translation() = at(1, 0, 0).translation() - turned_about_middle.linear().col(0);
+  o.motion = {turned_about_middle, at(0, 0, 0)};
+  EXPECT_EQ(operation_overlap(o).depth, 0);
+  o.passive[0].pose = at(0.96, 0, 0);  // as near as its corner comes on the way only
+  o.motion = {turned_about_middle, at(0, 0, 0), turned_about_middle};
+  const OperationOverlap found = operation_overlap(o, 0.005);
+  EXPECT_GT(found.depth, 0.005);
+  EXPECT_EQ(found.before_end, 0);  // its middle stays where it is
+}
+
 TEST(OperationOverlap, WhatLiesWhollyInsideIsFound) {
   AssemblyOperation o = down_onto_plate(0);
   o.active = {{"bead", block({0.001, 0.001, 0.001})}};

@@ -7,7 +7,9 @@
 #include <set>
 
 #include "gripper_design/simple_parts.hpp"
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/gripper_design/operation_load.hpp"
 #include "mmgrasp/gripper_design/rehearse_operation.hpp"
 
 namespace mmgrasp {
@@ -105,7 +107,7 @@ TEST(PlanGrippers, WhatWouldHelpHelps) {
   ASSERT_EQ(found.help.size(), 1u);
   EXPECT_EQ(found.help[0].substr(0, 42), "ring: a drive with 3 fingers, a stroke of ");
   const double opening = std::stod(found.help[0].substr(found.help[0].find("up to ") + 6)) / 1000;
-  EXPECT_NEAR(opening, 0.021, 1e-4);
+  EXPECT_NEAR(opening, 0.024, 1e-4);  // 20 mm, and 2 mm for each finger to let go
   EXPECT_EQ(plan_grippers(ring_on_peg(), {{"jaws", 2, 0.02}, {"c", 3, 0.006, opening}}).outcome, Outcome::solved);
   EXPECT_EQ(plan_grippers(ring_on_peg(), {{"c", 3, 0.006, opening - 0.0002}}).outcome, Outcome::infeasible);
 }
@@ -236,6 +238,108 @@ TEST(PlanGrippers, StopsWhenAsked) {
   EXPECT_FALSE(stopped.set);
 }
 
+/// A ring of an outer diameter is put on a plate.
+AssemblyOperation ring_on_plate(const std::string& name, double diameter, double height) {
+  AssemblyOperation o;
+  const double inner = diameter / 4, outer = diameter / 2;
+  o.name = name;
+  o.active = {{name, turned({{inner, 0}, {outer, 0}, {outer, height}, {inner, height}})}};
+  o.passive = {{"plate", block({0.2, 0.2, 0.005}), at(0, 0, -0.005)}};
+  o.motion = {at(0, 0, 0.05), at(0, 0, 0)};
+  return o;
+}
+
+TEST(PlanGrippers, ChosenGrippersOpenByThePromisedClearance) {
+  const std::vector<AssemblyOperation> order{ring_on_plate("small", 0.02, 0.02), ring_on_plate("large", 0.034, 0.02)};
+  PlanGrippersResult found = plan_grippers(order, kChuck);
+  ASSERT_EQ(found.outcome, Outcome::solved);
+  // One stroke of 16 mm takes both with the margins of 1 mm alone: 14 mm and 2 mm.
+  EXPECT_EQ(found.set->grippers.size(), 2u);
+  const auto expect_kept = [&](double clearance) {
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      const Gripper& gripper = found.set->grippers[found.set->gripper_of_part[i]];
+      const AssemblyGrasp& grasp = found.grasps[found.set->requirement_of_part[i]];
+      EXPECT_NEAR(grasp.clearance, clearance, 1e-12);
+      EXPECT_GE((gripper.max_opening - grasp.opening) / 2, clearance - 1e-6) << order[i].name;
+      EXPECT_LE(gripper.min_opening + 0.001, grasp.opening + 1e-6) << order[i].name;
+    }
+  };
+  expect_kept(0.002);
+  PlanGrippersOptions options;
+  options.clearance = 0.0005;
+  found = plan_grippers(order, kChuck, {}, options);
+  EXPECT_EQ(found.set->grippers.size(), 1u);
+  expect_kept(0.0005);
+  // A drive of 4 mm opens by no more than it has beside the margin.
+  options.clearance = 0.002;
+  found = plan_grippers(order, {{"short", 3, 0.004}}, {}, options);
+  ASSERT_EQ(found.outcome, Outcome::solved);
+  expect_kept(0.0015);
+}
+
+TEST(PlanGrippers, SegmentsThinnerThanTheContactAreCalledThin) {
+  const std::vector<AssemblyOperation> washer{ring_on_plate("washer", 0.0125, 0.0016)};
+  PlanGrippersResult found = plan_grippers(washer, kChuck);
+  ASSERT_EQ(found.outcome, Outcome::infeasible);
+  EXPECT_NE(found.missing.at(0).find("too thin: pads would overlap it by less than min_contact = 3 mm"),
+            std::string::npos)
+      << found.missing[0];
+  EXPECT_EQ(found.missing[0].find("wider"), std::string::npos);
+  ASSERT_EQ(found.help.size(), 1u);
+  EXPECT_EQ(found.help[0].substr(0, 24), "washer: a min_contact of");
+  PlanGrippersOptions options;
+  options.min_contact = std::stod(found.help[0].substr(24)) / 1000;
+  EXPECT_GT(options.min_contact, 0.001);
+  EXPECT_LE(options.min_contact, 0.0016);
+  EXPECT_EQ(plan_grippers(washer, kChuck, {}, options).outcome, Outcome::solved);
+}
+
+TEST(PlanGrippers, HoldingIsThatOfThePadsThatExist) {
+  AssemblyOperation o = ring_on_plate("bead", 0.009, 0.012);
+  o.insertion_force = 20;
+  o.hole = Eigen::Vector3d(0.004, 0, 0);
+  PlanGrippersOptions options;
+  options.holding.emplace();
+  options.holding->least_safety = 0;
+  const OperationLoad load = operation_load(o, *options.holding);
+  const auto expect_true = [&](const PlanGrippersResult& found) {
+    const int taken = found.set->requirement_of_part[0];
+    const AssemblyGrasp& grasp = found.grasps[taken];
+    EXPECT_LE(grasp.contact_width, found.set->grippers[0].pad_width() + 1e-12);
+    EXPECT_NEAR(found.holdings[taken].safety, held_load(grasp, load).safety, 1e-12);
+    EXPECT_NEAR(found.holdings[taken].contact_area, held_load(grasp, load).contact_area, 1e-15);
+  };
+  const PlanGrippersResult loose = plan_grippers({o}, kChuck, {}, options);
+  ASSERT_EQ(loose.outcome, Outcome::solved);
+  EXPECT_LT(loose.set->grippers[0].pad_width(), 0.003);  // closes to 1 mm: nearly an edge
+  expect_true(loose);
+  // What that does not hold, wider pads may: the gripper then closes no farther than it must.
+  const double narrow = loose.holdings[loose.set->requirement_of_part[0]].safety;
+  AssemblyGrasp wide = loose.grasps[loose.set->requirement_of_part[0]];
+  wide.contact_width = 0.013;
+  ASSERT_GT(held_load(wide, load).safety, 1.01 * narrow);
+  options.holding->least_safety = 1.005 * narrow;
+  const PlanGrippersResult firm = plan_grippers({o}, kChuck, {}, options);
+  ASSERT_EQ(firm.outcome, Outcome::solved);
+  EXPECT_NEAR(firm.set->grippers[0].min_opening, 0.008, 1e-5);
+  EXPECT_GE(firm.holdings[firm.set->requirement_of_part[0]].safety, options.holding->least_safety);
+  expect_true(firm);
+}
+
+TEST(PlanGrippers, ARehearsalThatWasStoppedHasMetNothingYet) {
+  std::vector<AssemblyOperation> order;
+  for (int i = 0; i < 4; ++i) order.push_back(ring_on_plate("ring_" + std::to_string(i), 0.02, 0.012));
+  Monitor monitor;
+  monitor.progress = [&](const std::string& stage, double) {
+    if (stage == "rehearsal") monitor.stop.stop();
+  };
+  PlanGrippersOptions options;
+  options.threads = 1;
+  const PlanGrippersResult found = plan_grippers(order, kChuck, {}, options, monitor);
+  EXPECT_EQ(found.outcome, Outcome::stopped);
+  EXPECT_TRUE(found.met.empty());
+}
+
 TEST(RehearseOperation, MeetsWhatTooShortFingersWould) {
   const std::vector<AssemblyOperation> order = ring_on_peg();
   const PlanGrippersResult& found = ring_plan();
@@ -244,6 +348,37 @@ TEST(RehearseOperation, MeetsWhatTooShortFingersWould) {
   EXPECT_EQ(rehearse_operation(gripper, grasp, order[0]), "");
   gripper.finger_length = found.requirements[found.set->requirement_of_part[0]].min_finger_length - 0.001;
   EXPECT_EQ(rehearse_operation(gripper, grasp, order[0]), "base meets peg during the motion");
+}
+
+TEST(RehearseOperation, EndsWhenInterrupted) {
+  const PlanGrippersResult& found = ring_plan();
+  CancelToken stop;
+  stop.stop();
+  const detail::InterruptionScope scope(stop);
+  EXPECT_THROW(
+      rehearse_operation(found.set->grippers[0], found.grasps[found.set->requirement_of_part[0]], ring_on_peg()[0]),
+      detail::Interrupted);
+}
+
+TEST(RehearseOperation, TurningPartsTakeTheGripperRoundTheirMiddle) {
+  AssemblyOperation o;
+  o.active = {{"bar", block({0.15, 0.005, 0.005}), at(0.3, 0.2, 0)}};
+  Pose turn = Pose::Identity();
+  turn.linear() = Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  turn.translation() = at(0.3, 0.2, 0).translation() - turn.linear() * at(0.3, 0.2, 0).translation();
+  o.motion = {turn, at(0, 0, 0)};
+  AssemblyGrasp grasp;
+  grasp.opening = 0.01;
+  grasp.T_active_tool = at(0.44, 0.2, 0);
+  grasp.T_active_tool.linear() << 0, 1, 0, 1, 0, 0, 0, 0, -1;
+  Gripper gripper;
+  gripper.max_opening = 0.02;
+  const double half = std::sqrt(0.5);
+  o.passive = {{"pin", block({0.002, 0.002, 0.1}), at(0.3 + 0.14 * half, 0.2 + 0.14 * half, 0.1)}};
+  const std::string met = rehearse_operation(gripper, grasp, o);
+  EXPECT_NE(met.find("meets pin during the motion"), std::string::npos) << met;
+  o.passive[0].pose = at(0.37, 0.27, 0.1);
+  EXPECT_EQ(rehearse_operation(gripper, grasp, o), "");
 }
 
 }  // namespace

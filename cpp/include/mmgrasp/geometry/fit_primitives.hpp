@@ -46,8 +46,9 @@ struct MMGRASP_EXPORT FittedPrimitive {
 /// not. A cylinder is as long as its outward wall: bores, which may run on, do not count. Walls that face inwards
 /// (bores) are never offered, nor are pairs of a box' faces of which one has less than a
 /// tenth of its area on it. `labels`: the segment of each face, as in MeshSegmentation. Throws InvalidInput when there
-/// is not one label >= 0 a face, or for threads of other meshes. Nothing when the monitor stops it. `threads`: those
-/// found by segment_mesh(), which count as the cylinder through their crests.
+/// is not one label >= 0 a face, or for threads of other meshes. Nothing when the monitor stops it. A number below
+/// the largest label that no face has is an empty segment: a box of no size, without widths. `threads`: those found by
+/// segment_mesh(), which count as the cylinder through their crests.
 MMGRASP_EXPORT std::vector<FittedPrimitive> fit_primitives(const TriangleMesh& mesh, const std::vector<int>& labels,
                                                            const std::vector<ScrewThread>& threads = {},
                                                            const Monitor& monitor = {});

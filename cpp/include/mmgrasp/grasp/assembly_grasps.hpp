@@ -46,13 +46,22 @@ MMGRASP_EXPORT std::vector<Facet> planar_facets(const TriangleMesh& mesh, const 
 /// Grasps by two parallel jaws: pairs of opposite, nearly parallel facets of a segment (`faces`; empty: the whole mesh)
 /// whose shadows on each other overlap, approached from every direction across the closing axis; the tips reach past
 /// the overlap's near end by `min_contact`, by half a pad and by a pad, as far as the overlap goes (P1 5.3.3,
-/// figure 5.12).
+/// figure 5.12). Pads stop at the outermost point of the facets under them: that is the opening where faces are rough
+/// or tilted. Other faces of the segment count for it as far as they stand out of a facet by no more than its own
+/// points under the pad differ.
 MMGRASP_EXPORT std::vector<AssemblyGrasp> jaw_grasps(const TriangleMesh& mesh, const std::vector<int>& faces = {},
                                                      const AssemblyGraspOptions& options = {});
 
 /// Grasps by three centric fingers: the axes of gripper and cylinder fall together, from either end, fingers turned in
 /// steps, at the same depths (P1 5.2.3).
 MMGRASP_EXPORT std::vector<AssemblyGrasp> centric_grasps(const CylinderFit& cylinder,
+                                                         const AssemblyGraspOptions& options = {});
+
+/// The same for the cylinder of a segment (`faces`; empty: the whole mesh) whose wall is rough: fingers open as far as
+/// its outermost point under a pad. The wall's points are off the cylinder by six times the median at most, and by no
+/// more than a wall turned by `parallel_angle` along a pad; what stands out farther is left to be met.
+MMGRASP_EXPORT std::vector<AssemblyGrasp> centric_grasps(const TriangleMesh& mesh, const std::vector<int>& faces,
+                                                         const CylinderFit& cylinder,
                                                          const AssemblyGraspOptions& options = {});
 
 }  // namespace mmgrasp

@@ -24,8 +24,8 @@ struct MMGRASP_EXPORT PlacedMesh {
 struct MMGRASP_EXPORT AssemblyOperation {
   std::vector<PlacedMesh> active;   ///< Held; not empty.
   std::vector<PlacedMesh> passive;  ///< Stays where it is: fixture and table too.
-  /// T_passive_active from before the operation to its end, at least one pose; straight lines and even turns between
-  /// them. The last one is where the gripper opens.
+  /// T_passive_active from before the operation to its end, at least one pose. Between two of them the middle of the
+  /// box around the active parts goes straight, and they turn evenly. The last one is where the gripper opens.
   std::vector<Pose> motion;
   std::string name = {};       ///< For messages and results.
   double insertion_force = 0;  ///< With which the hole resists, against the motion's last straight line [N]; >= 0.
@@ -62,7 +62,8 @@ struct MMGRASP_EXPORT FingerLengthRange {
 /// The finger lengths with which neither fingers nor palm meet the subassemblies: while the gripper approaches the
 /// active one, along the whole motion, and while it opens and moves back at the end (P1 5.3.2 and 5.3.3). The palm and
 /// what carries it count as endless behind the finger's roots. Exact for motions along the approach; others are looked
-/// at every `step` [m], with as much margin as is moved between two looks. Touching within 1e-6 m is no collision.
+/// at every `step` [m] of what moves farthest, with as much margin as is moved between two looks. Touching within
+/// 1e-6 m is no collision.
 /// Throws InvalidInput for a wrong grasp, operation or step.
 MMGRASP_EXPORT FingerLengthRange finger_length_range(const AssemblyGrasp& grasp, const AssemblyOperation& operation,
                                                      double step = 0.0005);

@@ -48,6 +48,8 @@ struct MMGRASP_EXPORT Gripper {
   bool holds(const SegmentRequirement& requirement) const;
   /// Half the pad's length along the approach lies on either side of the tool frame: the last 20 mm, or the finger.
   double pad_length() const;
+  /// Width of the pad across the approach: the finger's, or what is left of it where three closed fingers would meet.
+  double pad_width() const;
   /// Radius of the palm, a cylinder that covers the fingers while they are open [m].
   double palm_radius() const;
   /// What planners need to know of it: tool frame, openings, driven joint and body, the names those of files(). A

@@ -35,7 +35,7 @@ struct MMGRASP_EXPORT MinimalGrippersOptions {
   /// Values of the largest opening and of the finger length on P1's grid (n and m of 5.3.4); 0 and 0: every gripper
   /// that matters, exactly.
   int grid_openings = 0, grid_lengths = 0;
-  int max_nodes = 20000;   ///< Most nodes of the search for fewest changes, > 0.
+  int max_nodes = 20000;   ///< Most nodes of the search for fewest changes, and of that for better segments, > 0.
   double time_limit = 60;  ///< Wall-clock cap [s], > 0.
   void check() const;
 };
@@ -45,14 +45,17 @@ struct MMGRASP_EXPORT MinimalGrippersResult {
   /// `solved`: proven, in cost and changes (on a grid: of the grid's grippers); `approximate`: a set that takes every
   /// part, `lower_bound` and `changes_bound` say what is proven; `infeasible`: see `explanations`; `stopped`.
   Outcome outcome = Outcome::timeout;
-  std::vector<Gripper> grippers;          ///< The grippers chosen, in the order of first use.
-  std::vector<std::string> parts;         ///< Names of the parts, in the order of assembly.
-  std::vector<int> gripper_of_part;       ///< Which of `grippers` takes it; one per part.
-  std::vector<int> requirement_of_part;   ///< Which of the requirements given it takes the part by; one per part.
-  double cost = 0;                        ///< Cost of the grippers and of the changes.
-  double lower_bound = 0;                 ///< Proven: no set of grippers costs less.
-  int changes = 0;                        ///< How often the gripper changes from part to part.
-  int changes_bound = 0;                  ///< Proven: no set of the same cost needs fewer.
+  std::vector<Gripper> grippers;         ///< The grippers chosen, in the order of first use.
+  std::vector<std::string> parts;        ///< Names of the parts, in the order of assembly.
+  std::vector<int> gripper_of_part;      ///< Which of `grippers` takes it; one per part.
+  std::vector<int> requirement_of_part;  ///< Which of the requirements given it takes the part by; one per part.
+  double cost = 0;                       ///< Cost of the grippers and of the changes.
+  double lower_bound = 0;                ///< Proven: no set of grippers costs less.
+  int changes = 0;                       ///< How often the gripper changes from part to part.
+  int changes_bound = 0;                 ///< Proven: no set of the same cost needs fewer.
+  /// preferred_grippers() decided for every better segment of a part whether the set stays as good with it.
+  /// False: `max_nodes` or the time limit ended first, and some part may be taken by a worse one.
+  bool preference_finished = true;
   int candidates = 0;                     ///< Grippers that were chosen among, none doing only what another does.
   std::vector<std::string> uncovered;     ///< Parts that no gripper takes, in order.
   std::vector<std::string> explanations;  ///< One per uncovered part: what each segment asks that nothing offers.
@@ -75,7 +78,9 @@ MMGRASP_EXPORT MinimalGrippersResult minimal_grippers(const std::vector<SegmentR
 /// A set of no higher cost and no more changes that takes each part by its best segment, as far as one does: parts are
 /// gone through in the order of assembly, and of each the requirements in the order of their values, highest first;
 /// the first with which the set stays as good is kept. `values`: one per requirement, not NaN; equal ones stay as
-/// minimal_grippers() chose. Its `requirement_of_part` counts in the requirements given. Throws as minimal_grippers()
+/// minimal_grippers() chose. Asked are the set at hand, then each exchange of one gripper, then a branch and bound of
+/// at most a quarter of `max_nodes`, all of which together get five times `max_nodes`; of more than 4,000 requirements
+/// the set at hand alone. Its `requirement_of_part` counts in the requirements given. Throws as minimal_grippers()
 /// does, and for another number of values.
 MMGRASP_EXPORT MinimalGrippersResult preferred_grippers(const std::vector<SegmentRequirement>& requirements,
                                                         const std::vector<double>& values,

@@ -12,7 +12,7 @@ namespace mmgrasp {
 struct MMGRASP_EXPORT OperationOverlap {
   double depth = 0;             ///< A point of one part's surface lies this deep in the other [m]; 0: nowhere.
   std::string active, passive;  ///< The two parts' names; empty where depth is 0.
-  double before_end = 0;        ///< The way that is left when it happens, along the active subassembly's origin [m].
+  double before_end = 0;        ///< The way that is left when it happens, of the active parts' middle [m].
 };
 
 /// The deepest overlap at the end of an operation, or, if that is at most `allowed` [m], along its motion (looked at

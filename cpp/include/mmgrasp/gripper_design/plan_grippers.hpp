@@ -64,17 +64,20 @@ struct MMGRASP_EXPORT SegmentFate {
 struct MMGRASP_EXPORT PlanGrippersResult {
   /// `solved`: each operation has a gripper that was rehearsed, and the set is proven; `infeasible`: an operation has
   /// no grasp to try, or its parts stand in each other (see `missing`), or no drive takes it (see `set`); `not_found`:
-  /// no grasp that was tried goes through an operation, or a rehearsal met something; `stopped`; else as `set`.
+  /// no grasp that was tried goes through an operation, or a rehearsal met something, or a chosen gripper's pads slip;
+  /// `stopped`; else as `set`.
   Outcome outcome = Outcome::stopped;
   std::map<std::string, SegmentedPart> parts;    ///< The parts that are moved, by name.
   std::vector<SegmentFate> fates;                ///< Every segment of what is moved, in every operation.
   std::vector<SegmentRequirement> requirements;  ///< One per grasp kept; its `part` is the operation's name.
   std::vector<AssemblyGrasp> grasps;             ///< One per requirement, in the frame of the active subassembly.
-  std::vector<HeldLoad> holdings;                ///< One per requirement; empty where nothing is asked of holding.
-  std::vector<std::string> missing;              ///< Operations that cannot be done, each with the reasons.
-  std::vector<std::string> help;                 ///< Single changes each of which gives an operation its grasp.
-  std::optional<MinimalGrippersResult> set;      ///< The least set; none when something is missing.
-  std::vector<std::string> met;                  ///< What each operation's rehearsal met; empty: nothing, or no set.
+  /// One per requirement, with pads as wide as fingers may be, of those that were chosen as wide as their gripper's;
+  /// empty where nothing is asked of holding.
+  std::vector<HeldLoad> holdings;
+  std::vector<std::string> missing;          ///< Operations that cannot be done, each with the reasons.
+  std::vector<std::string> help;             ///< Single changes each of which gives an operation its grasp.
+  std::optional<MinimalGrippersResult> set;  ///< The least set; none when something is missing.
+  std::vector<std::string> met;              ///< What each operation's rehearsal met; empty: nothing, or no set.
 };
 
 /// The least set of grippers that puts an assembly together (P1 chapter 5), from meshes and an order.

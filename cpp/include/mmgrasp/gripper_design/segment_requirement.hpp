@@ -17,6 +17,8 @@ struct MMGRASP_EXPORT SegmentRequirement {
   double opening = 0;
   double min_finger_length = 0;                                        ///< [m], >= 0.
   double max_finger_length = std::numeric_limits<double>::infinity();  ///< [m], >= min_finger_length.
+  /// How far each finger opens to let go of it [m], >= 0: minimal_grippers() keeps twice this free above `opening`.
+  double clearance = 0;
 
   void check() const;        ///< Throws InvalidInput naming part, segment, field, value and rule.
   std::string name() const;  ///< "part" or "part, segment".

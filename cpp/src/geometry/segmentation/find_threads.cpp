@@ -11,6 +11,8 @@
 
 #include "geometry/segmentation/face_graph.hpp"
 #include "geometry/segmentation/refine_models.hpp"
+#include "geometry/segmentation/unwinding.hpp"
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 
 namespace mmgrasp::detail {
@@ -159,7 +161,9 @@ std::vector<int> edges_along(const FaceGraph& graph, const std::vector<int>& all
   }
   const double reach = kRadius * 2 * kPi * std::abs(helix.pitch_per_radian);
   std::vector<int> out;
+  InterruptionPoll poll;
   for (const int k : all) {
+    poll();
     const FaceBorder& b = graph.borders[k];
     const Vector3d u = graph.vertices[b.vertices[0]], v = graph.vertices[b.vertices[1]];
     const Place at = place_at(helix, 0.5 * (u + v));
@@ -168,17 +172,6 @@ std::vector<int> edges_along(const FaceGraph& graph, const std::vector<int>& all
     if (((v - u) / b.length).cross(motion.normalized()).norm() < kDirection) out.push_back(k);
   }
   return out;
-}
-
-struct Turn {
-  double angle, height, length;
-  int edge;
-};
-
-std::complex<double> unwound(const std::vector<Turn>& turns, double per_metre) {
-  std::complex<double> sum = 0;
-  for (const Turn& t : turns) sum += std::polar(t.length, t.angle - per_metre * t.height);
-  return sum;
 }
 
 /// The pitch at which the edges, unwound, come to lie at one angle, and those edges. Nothing where they do not: edges
@@ -213,15 +206,7 @@ std::optional<std::vector<int>> edges_in_phase(const FaceGraph& graph, const std
   const double span = looked_at.high - looked_at.low;
   if (near.empty() || !(radius > 0) || !(span > kFinest * radius)) return std::nullopt;
   const double most = 2 * kPi / (kFinest * radius), least = 2 * kPi / (kCoarsest * radius), step = 1 / span;
-  double best = 0, coherent = -1;
-  for (double w = least; w <= most; w += step) {
-    for (const double tried : {w, -w}) {
-      const double found = std::abs(unwound(near, tried));
-      if (found <= coherent) continue;
-      coherent = found;
-      best = tried;
-    }
-  }
+  double best = longest_unwound(near, least, most, step), coherent = std::abs(unwound(near, best));
   for (double part = step / 2; part > 1e-4 * step; part /= 2) {
     for (const double tried : {best - part, best + part}) {
       const double found = std::abs(unwound(near, tried));
@@ -281,8 +266,10 @@ std::vector<std::vector<int>> root_chains(const FaceGraph& graph) {
     };
     return away(from).dot(away(to)) < -0.5;
   };
+  InterruptionPoll poll;
   for (const auto& [vertex, edges] : at_vertex) {
     for (const int begin : edges) {
+      poll();
       if (taken[begin]) continue;
       std::vector<int> chain{begin};
       taken[begin] = 1;
@@ -307,7 +294,9 @@ std::optional<ScrewThread> thread_around(const FaceGraph& graph, const Helix& he
   const double pitch = 2 * kPi * std::abs(helix.pitch_per_radian), slack = 0.05 * pitch + 3e-3 * root;
   const auto faces_between = [&](double low, double high) {
     std::vector<int> faces;
+    InterruptionPoll poll;
     for (int f = 0; f < graph.size(); ++f) {
+      poll();
       double off = 0;  // how far it reaches out of the thread's radii
       bool inside = true, beyond = false, at_root = true;
       for (const int v : graph.faces[f]) {
@@ -381,6 +370,7 @@ std::vector<ScrewThread> find_threads(const TriangleMesh& mesh) {
   std::stable_sort(chains.begin(), chains.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });
   if (chains.size() > kMostChains) chains.resize(kMostChains);
   for (const std::vector<int>& chain : chains) {
+    throw_if_interrupted();
     const auto known = std::count_if(chain.begin(), chain.end(), [&](int k) {
       return taken[graph.borders[k].first] || taken[graph.borders[k].second];
     });

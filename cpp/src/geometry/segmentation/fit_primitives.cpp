@@ -218,6 +218,10 @@ std::vector<FittedPrimitive> fit_primitives(const TriangleMesh& mesh, const std:
   }
   for (const std::vector<int>& faces : segments) {
     monitor.report("primitives", static_cast<double>(out.size()) / static_cast<double>(segments.size()));
+    if (faces.empty()) {  // A number that no face has.
+      out.emplace_back();
+      continue;
+    }
     const SegmentSurface surface = detail::segment_surface(outward, faces);
     const double hull_volume = surface.hull.volume * std::pow(surface.scale, 3);
     FittedPrimitive best = detail::box_candidate(surface);

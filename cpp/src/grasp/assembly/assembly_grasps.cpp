@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "grasp/assembly/clip_polygon.hpp"
+#include "grasp/assembly/pad_contact.hpp"
+#include "grasp/assembly/shadow_grid.hpp"
 #include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
@@ -18,6 +20,9 @@ namespace mmgrasp {
 namespace {
 
 using detail::kTwoPi;
+
+/// Points of a wall are off its cylinder by no more than so many times the median: four standard deviations.
+constexpr double kRough = 6;
 
 Eigen::Vector3d scaled_normal(const TriangleMesh& mesh, int face) {
   const auto& t = mesh.triangles[face];
@@ -92,10 +97,12 @@ bool apart(const Polygon& a, const Polygon& b) {
 /// Where the shadows of two facets lie on each other, in convex pieces.
 std::vector<Polygon> overlap_of(const std::vector<Polygon>& first, const std::vector<Polygon>& second) {
   std::vector<Polygon> out;
+  const detail::ShadowGrid grid(second);
   detail::InterruptionPoll poll(256);
   for (const Polygon& a : first) {
-    for (const Polygon& b : second) {
+    for (const int near : grid.near(a)) {
       poll();
+      const Polygon& b = second[near];
       if (apart(a, b)) continue;
       Polygon piece = a;
       for (std::size_t i = 0; i < b.size() && !piece.empty(); ++i) {
@@ -152,9 +159,9 @@ AssemblyGrasp grasp_at(int fingers, double opening, const AssemblyGraspOptions& 
   return grasp;
 }
 
-/// Grasps of one pair of facets.
-void add_pair(const TriangleMesh& mesh, const Facet& a, const Facet& b, const AssemblyGraspOptions& options,
-              std::vector<AssemblyGrasp>& out) {
+/// Grasps of one pair of facets of a segment.
+void add_pair(const TriangleMesh& mesh, const std::vector<int>& faces, const Facet& a, const Facet& b,
+              const AssemblyGraspOptions& options, std::vector<AssemblyGrasp>& out) {
   const Eigen::Matrix3d axes = plane_axes((a.normal - b.normal).normalized());
   const Eigen::Vector3d normal = axes.col(2);
   const double opening = normal.dot(a.centre - b.centre);
@@ -163,6 +170,8 @@ void add_pair(const TriangleMesh& mesh, const Facet& a, const Facet& b, const As
   const std::optional<Eigen::Vector2d> middle = centre_of(overlap);
   if (!middle) return;
   const double height = normal.dot(a.centre + b.centre) / 2;
+  const detail::PadFaces first = detail::pad_faces(mesh, faces, a, normal);
+  const detail::PadFaces second = detail::pad_faces(mesh, faces, b, -normal);
   for (int i = 0; i < options.directions; ++i) {
     const double turn = kTwoPi * i / options.directions;
     const Eigen::Vector2d approach(std::cos(turn), std::sin(turn)), across(-approach.y(), approach.x());
@@ -189,7 +198,8 @@ void add_pair(const TriangleMesh& mesh, const Facet& a, const Facet& b, const As
       for (const Polygon& piece : strip) area += area_of(detail::clip_polygon(piece, {approach, approach.dot(tip)}));
       grasp.contact_length = depth;
       grasp.contact_width = area / depth;
-      out.push_back(grasp);
+      detail::stand_on_facets(mesh, first, second, grasp);
+      if (grasp.opening <= options.max_opening) out.push_back(grasp);
     }
   }
 }
@@ -259,7 +269,8 @@ std::vector<Facet> planar_facets(const TriangleMesh& mesh, const std::vector<int
 std::vector<AssemblyGrasp> jaw_grasps(const TriangleMesh& mesh, const std::vector<int>& faces,
                                       const AssemblyGraspOptions& options) {
   options.check();
-  std::vector<Facet> facets = planar_facets(mesh, faces, options.facet_angle);
+  const std::vector<int> segment = given_or_all(mesh, faces);
+  std::vector<Facet> facets = planar_facets(mesh, segment, options.facet_angle);
   const double least_area = options.min_contact * options.min_contact;
   while (!facets.empty() && facets.back().area < least_area) facets.pop_back();
   std::vector<AssemblyGrasp> out;
@@ -268,7 +279,7 @@ std::vector<AssemblyGrasp> jaw_grasps(const TriangleMesh& mesh, const std::vecto
     for (std::size_t k = i + 1; k < facets.size(); ++k) {
       poll();
       if (facets[i].normal.dot(facets[k].normal) <= -std::cos(options.parallel_angle))
-        add_pair(mesh, facets[i], facets[k], options, out);
+        add_pair(mesh, segment, facets[i], facets[k], options, out);
     }
   }
   return out;
@@ -299,6 +310,19 @@ std::vector<AssemblyGrasp> centric_grasps(const CylinderFit& cylinder, const Ass
       }
     }
   }
+  return out;
+}
+
+std::vector<AssemblyGrasp> centric_grasps(const TriangleMesh& mesh, const std::vector<int>& faces,
+                                          const CylinderFit& cylinder, const AssemblyGraspOptions& options) {
+  std::vector<AssemblyGrasp> out = centric_grasps(cylinder, options);
+  const std::vector<int> segment = given_or_all(mesh, faces);
+  const double rough = kRough * detail::wall_deviation(mesh, segment, cylinder);
+  const std::vector<int> beyond = detail::faces_beyond(mesh, segment, cylinder);
+  for (AssemblyGrasp& grasp : out)
+    detail::stand_on_wall(mesh, beyond, std::min(rough, options.parallel_angle * grasp.contact_length), grasp);
+  const auto too_wide = [&](const AssemblyGrasp& g) { return g.opening > options.max_opening; };
+  out.erase(std::remove_if(out.begin(), out.end(), too_wide), out.end());
   return out;
 }
 

@@ -8,9 +8,11 @@
 #include <utility>
 
 #include "grasp/assembly/clip_polygon.hpp"
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/limits.hpp"
+#include "mmgrasp/grasp/detail/motion_looks.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -106,7 +108,11 @@ Eigen::Isometry3d height_frame(const Pose& T_parent_tool) {
 class Range {
  public:
   Range(const AssemblyGrasp& grasp, const AssemblyOperation& operation, double step)
-      : grasp_(grasp), operation_(operation), step_(step), palm_(palm(grasp)) {
+      : grasp_(grasp),
+        operation_(operation),
+        step_(step),
+        middle_(detail::middle_of(operation.active)),
+        palm_(palm(grasp)) {
     const double r = grasp.opening / 2, back = grasp.thickness;
     for (int i = 0; i < grasp.fingers; ++i) {
       closed_.push_back(finger(grasp, i, r, r + back));
@@ -140,44 +146,38 @@ class Range {
 
   void follow(const Pose& from, const Pose& to) {
     const Eigen::Isometry3d a = from_passive(from), b = from_passive(to);
-    const Eigen::AngleAxisd turn(b.linear() * a.linear().transpose());
-    const Eigen::Vector3d way = b.translation() - a.translation();
-    if (std::abs(turn.angle()) < 1e-12 && way.head<2>().norm() < 1e-12) {
+    const detail::MotionPiece piece(from, to, middle_);
+    const Eigen::Vector3d rise = b.translation() - a.translation();
+    if (piece.angle() < 1e-12 && rise.head<2>().norm() < 1e-12) {
       for (const PlacedMesh& part : operation_.passive) {
         look(part, a * part.pose, b * part.pose, closed_, false, 0, "the motion");
       }
       return;
     }
-    const Eigen::Quaterniond qa((from * grasp_.T_active_tool).linear()), qb((to * grasp_.T_active_tool).linear());
-    const double moved = way.norm() + std::abs(turn.angle()) * farthest();
-    const double count = std::ceil(moved / step_);
+    const double moved = longest_way(piece), count = std::ceil(moved / step_);
     if (!(count < kMaxLooks))
       throw InvalidInput("step = " + std::to_string(step_) + ": the motion would be checked more than 1000000 times");
     const int looks = std::max(1, static_cast<int>(count));
-    const Pose tool_a = from * grasp_.T_active_tool, tool_b = to * grasp_.T_active_tool;
     for (int k = 0; k <= looks && range_.shortest <= range_.longest; ++k) {
-      const double s = static_cast<double>(k) / looks;
-      Pose tool = Pose::Identity();
-      tool.translation() = (1 - s) * tool_a.translation() + s * tool_b.translation();
-      tool.linear() = qa.slerp(s, qb).toRotationMatrix();
-      const Eigen::Isometry3d at = height_frame(tool);
+      const Eigen::Isometry3d at = from_passive(piece.at(static_cast<double>(k) / looks));
       for (const PlacedMesh& part : operation_.passive) {
         look(part, at * part.pose, at * part.pose, closed_, false, moved / looks / 2, "the motion");
       }
     }
   }
 
-  /// Largest distance of the passive subassembly from the tool's way.
-  double farthest() const {
-    double out = 0;
+  /// No point of the passive subassembly moves farther than this, seen from the gripper: as the middle does, and as far
+  /// as it is from the middle times the turn. Distances from a point that moves straight are largest at an end.
+  double longest_way(const detail::MotionPiece& piece) const {
+    double farthest = 0;
     for (const PlacedMesh& part : operation_.passive) {
+      if (piece.angle() == 0) break;
       for (const Eigen::Vector3d& v : part.mesh->vertices) {
-        for (const Pose& pose : operation_.motion) {
-          out = std::max(out, (part.pose * v - (pose * grasp_.T_active_tool).translation()).norm());
-        }
+        const Eigen::Vector3d p = part.pose * v;
+        farthest = std::max({farthest, (p - piece.middle_from()).norm(), (p - piece.middle_to()).norm()});
       }
     }
-    return out;
+    return piece.way().norm() + piece.angle() * farthest;
   }
 
   /// A part that moves straight along the approach from `a` to `b`. Fingers that move in or back along it (`passing`)
@@ -199,6 +199,7 @@ class Range {
     points.reserve(part.mesh->vertices.size());
     for (const Eigen::Vector3d& v : part.mesh->vertices) points.push_back(a * v);
     for (const auto& t : part.mesh->triangles) {
+      poll_();
       const std::array<Eigen::Vector3d, 3> corners{points[t[0]], points[t[1]], points[t[2]]};
       if (std::max({corners[0].z(), corners[1].z(), corners[2].z()}) + up + margin <= kTouching) continue;
       const Eigen::Vector3d low = corners[0].cwiseMin(corners[1]).cwiseMin(corners[2]);
@@ -247,11 +248,13 @@ class Range {
   const AssemblyGrasp& grasp_;
   const AssemblyOperation& operation_;
   double step_;
+  Eigen::Vector3d middle_;  // The active parts'.
   Column palm_;
   std::vector<Column> closed_, opening_;
   double reach_ = 0;
   std::map<const TriangleMesh*, Eigen::AlignedBox3d> boxes_;
   FingerLengthRange range_;
+  detail::InterruptionPoll poll_;
 };
 
 bool is_pose(const Pose& pose) {
@@ -281,7 +284,8 @@ void AssemblyOperation::check() const {
   if (hole) require_numbers(*hole, "hole", "m");
   if (insertion_force == 0) return;
   const bool straight =
-      motion.size() > 1 && (motion.back().translation() - motion.end()[-2].translation()).norm() > kTouching;
+      motion.size() > 1 &&
+      detail::MotionPiece(motion.end()[-2], motion.back(), detail::middle_of(active)).way().norm() > kTouching;
   require(straight, "insertion_force", insertion_force, "needs a motion that ends with a straight line");
 }
 

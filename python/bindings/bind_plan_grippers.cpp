@@ -166,15 +166,15 @@ void bind_plan_grippers(py::module_& m) {
        option_help(plan_grippers_fields()))
           .c_str());
   m.def(
-      "segment_grasps",
+      "assembly_grasps",
       [](const Given<PlacedMesh>& part, const Given<MeshSegment>& segment, const Given<FittedPrimitive>& primitive,
          const Given<std::vector<GripperActuator>>& actuators, const py::kwargs& keywords) {
-        const auto options = read_options(plan_grippers_fields(), keywords, "segment_grasps");
+        const auto options = read_options(plan_grippers_fields(), keywords, "assembly_grasps");
         const auto drives = taken(actuators, "actuators", "GripperActuator");
         const PlacedMesh placed = taken(part, "part");
         const MeshSegment cut = taken(segment, "segment");
         const FittedPrimitive fitted = taken(primitive, "primitive");
-        return interruptible([&] { return segment_grasps(placed, cut, fitted, drives, options); });
+        return interruptible([&] { return assembly_grasps(placed, cut, fitted, drives, options); });
       },
       "part"_a, "segment"_a, "primitive"_a, "actuators"_a,
       ("The grasps that plan_grippers tries of a segment, in the frame of the active subassembly; the palm is as wide "

@@ -226,7 +226,8 @@ void bind_world_maps(py::module_& m) {
           [](World& w, const std::string& name, const OccupancyMap& occupancy, const FreeOrOccupied& unknown,
              const OptionalArray& bounds, const OptionalArray& pose) {
             const OccupancyObstacleOptions options = occupancy_obstacle(unknown, bounds);
-            add_cells(w, name, reading_octrees_interruptibly([&] { return occupancy.obstacle_cells(options); }), pose_argument(pose, "pose"));
+            add_cells(w, name, reading_octrees_interruptibly([&] { return occupancy.obstacle_cells(options); }),
+                      pose_argument(pose, "pose"));
           },
           "name"_a, "occupancy"_a, "unknown"_a = "free", py::kw_only(), "bounds"_a = py::none(), "pose"_a = py::none(),
           "The occupied cells of an octree as solid voxels; with `unknown=\"occupied\"` also those that no ray "

@@ -12,7 +12,7 @@ namespace {
 // stacks, which no C++ frame survives. So the calls of other threads are ended before, and their threads go to sleep.
 std::atomic<bool> g_closing{false};
 std::atomic<std::thread::id> g_closer;  // the thread that ends the interpreter: it never sleeps
-std::atomic<int> g_waiting{0};  // calls of any thread that have not gone to sleep
+std::atomic<int> g_waiting{0};          // calls of any thread that have not gone to sleep
 
 struct Waiting {
   Waiting() { ++g_waiting; }

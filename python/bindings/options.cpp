@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string_view>
 #include <map>
+#include <string_view>
 
 #include "mmgrasp/core/limits.hpp"
 

@@ -37,5 +37,5 @@ from ._core import (
     SegmentFate as SegmentFate,
     PlanGrippersResult as PlanGrippersResult,
     plan_grippers as plan_grippers,
-    segment_grasps as segment_grasps,
+    assembly_grasps as assembly_grasps,
 )

@@ -20,7 +20,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import NamedTuple
 
-from mmgrasp._files import ASSETS, GIF, PNG
+from mmgrasp._files import ASSETS, PNG
 from mmgrasp.cli.arguments import build_parser
 from plan_by_hand import plan_by_hand
 
@@ -51,7 +51,7 @@ def odd_files(folder: Path) -> list[Path]:
     (folder / "some.json").write_text('{"format": "mmgrasp-plan", "version": 4}')
     (folder / "plan.json").write_text(json.dumps(plan_by_hand()))
     (folder / "picture.png").write_bytes(PNG + b"an earlier one")
-    (folder / "film.gif").write_bytes(GIF + b"an earlier one")
+    (folder / "film.gif").write_bytes(b"GIF89a an earlier one")
     return [*folder.iterdir(), folder / "nowhere"]
 
 

@@ -66,7 +66,7 @@ CHEAP = {
         ReachDatabase.verify Roadmap.load Roadmap.save
         """,
     "one gripper: its links, some hundred grasps of one segment, or one operation (0.3 s for a path of 300,000 poses, 0.6 s with two meshes of 180,000 triangles)": """
-        free_gripper rehearse_operation segment_grasps
+        free_gripper rehearse_operation assembly_grasps
         """,
     "lists names, or looks up one": """
         _allowed_bodies cache_folder derivative_free_solver_names find_package grasp_search_names manipulation_planner_names

@@ -36,9 +36,12 @@ def segmented(
 def widths_offered(
     mesh: mg.Mesh, found: mg.grasping.MeshSegmentation
 ) -> list[tuple[mg.grasping.MeshSegment, list[float]]]:
-    """Each segment with the widths of its primitive [mm]."""
+    """Each segment with the widths of its primitive [mm] as they are offered to grippers: threads are not to be held."""
     fits = mg.grasping.fit_primitives(mesh, found.labels, threads=found.threads)
-    return [(segment, [1e3 * w.width for w in fit.widths]) for segment, fit in zip(found.segments, fits, strict=True)]
+    return [
+        (segment, [] if segment.threaded else [1e3 * w.width for w in fit.widths])
+        for segment, fit in zip(found.segments, fits, strict=True)
+    ]
 
 
 @pytest.mark.slow

@@ -148,8 +148,9 @@ def test_the_lines_keep_boxes_that_the_file_has(tmp_path: Path, unit: str) -> No
     content = yaml.safe_load(shipped_assembly("pulley").read_text())
     scale = {"mm": 1.0, "inch": 1 / 25.4}[unit]
     tilted = {"xyz": [scale * 1e-5, -scale * 2, scale * 22], "rpy": [0.1, -0.2, 3.0]}
-    boxes: list[Any] = [{"box": [scale * 70, scale * 70, scale * 4], "pose": tilted}, {"box": [scale * 5] * 3}]
-    given = {"pulley": [1, *boxes], "sleeve": boxes[:1], "shaft": [0]}
+    upright = {"box": [scale * 50, scale * 50, scale * 3], "pose": {"xyz": [0, 0, scale * 11]}}
+    boxes: list[Any] = [{"box": [scale * 70, scale * 70, scale * 4], "pose": tilted}, {"box": [scale * 72] * 3}]
+    given = {"pulley": [1, *boxes], "sleeve": [upright], "shaft": [0]}
     content["unit"] = unit
     for part in content["parts"]:
         for key in ("box", "turned"):

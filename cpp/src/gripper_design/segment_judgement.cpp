@@ -167,7 +167,8 @@ void note_drive(const Judgement& by, const PlacedMesh& part, const MeshSegment& 
                 const Monitor& monitor) {
   const double above = kept_above(by.options.clearance, by.options);
   GripperActuator drive{"", fingers, std::max(above + by.options.opening_margin, kLeastStroke)};
-  for (const Tried& t : try_all(by, segment_grasps(part, segment, primitive, {drive}, by.options), keep_off, monitor)) {
+  for (const Tried& t :
+       try_all(by, assembly_grasps(part, segment, primitive, {drive}, by.options), keep_off, monitor)) {
     if (!t.fell_by.empty()) continue;
     drive.max_opening = std::max(t.found.grasp.opening + above, drive.stroke);
     const auto [place, is_new] = remedy.drives.emplace(fingers, drive);
@@ -182,7 +183,7 @@ bool too_thin(const Judgement& by, const PlacedMesh& part, const MeshSegment& se
               const Monitor& monitor) {
   PlanGrippersOptions thin = by.options;
   thin.min_contact = std::min(kLeastContact, by.options.min_contact);
-  const std::vector<AssemblyGrasp> grasps = segment_grasps(part, segment, primitive, drives, thin);
+  const std::vector<AssemblyGrasp> grasps = assembly_grasps(part, segment, primitive, drives, thin);
   const Judgement judgement{by.operation, by.actuators, thin, by.load, by.keep_off};
   for (const Tried& t : try_all(judgement, grasps, keep_off, monitor))
     if (t.fell_by.empty()) remedy.min_contact = std::max(remedy.min_contact, t.found.grasp.contact_length);
@@ -225,7 +226,7 @@ std::vector<FreeGrasp> judge_segment(const Judgement& by, const PlacedMesh& part
   for (auto& piece : keep_off)
     for (Eigen::Vector3d& p : piece) p = part.pose * p;
   const std::vector<GripperActuator> drives = with_fingers(by.actuators, fate.fingers);
-  const std::vector<AssemblyGrasp> grasps = segment_grasps(part, segment, primitive, drives, by.options);
+  const std::vector<AssemblyGrasp> grasps = assembly_grasps(part, segment, primitive, drives, by.options);
   const std::vector<Tried> all = try_all(by, grasps, keep_off, monitor);
   fate.tried = static_cast<int>(all.size());
   std::vector<FreeGrasp> found;
@@ -244,10 +245,10 @@ std::vector<FreeGrasp> judge_segment(const Judgement& by, const PlacedMesh& part
 
 namespace mmgrasp {
 
-std::vector<AssemblyGrasp> segment_grasps(const PlacedMesh& part, const MeshSegment& segment,
-                                          const FittedPrimitive& primitive,
-                                          const std::vector<GripperActuator>& actuators,
-                                          const PlanGrippersOptions& options) {
+std::vector<AssemblyGrasp> assembly_grasps(const PlacedMesh& part, const MeshSegment& segment,
+                                           const FittedPrimitive& primitive,
+                                           const std::vector<GripperActuator>& actuators,
+                                           const PlanGrippersOptions& options) {
   using namespace detail;
   options.check();
   const int fingers = fingers_for(primitive.kind);

@@ -16,10 +16,10 @@ from .._core import (
     GripperActuator,
     LinkShape,
     World,
+    assembly_grasps,
     finger_length_range,
     free_gripper,
     minimal_grippers,
-    segment_grasps,
 )
 from ..grippers.assembly_file import FingerChoice
 from ..grippers.motor_product import CONTACT, ORDER, motor_product
@@ -142,7 +142,7 @@ def least_length(plan: GripperPlan, part: str, fingers: int, opening: float) -> 
         if FINGERS_OF.get(primitive.kind) != fingers:
             continue
         body = plan.segmentations[part].segments[segment]
-        for grasp in segment_grasps(placed, body, primitive, plan.assembly.actuators, **options):
+        for grasp in assembly_grasps(placed, body, primitive, plan.assembly.actuators, **options):
             if grasp.T_active_tool[2, 2] > -0.999 or abs(1e3 * grasp.opening / SCALE - opening) > 0.2:
                 continue
             lengths = finger_length_range(grasp, operation)

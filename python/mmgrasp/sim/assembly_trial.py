@@ -245,7 +245,7 @@ class AssemblyCell:
             control = Insertion(tool, self._errand(step, grasp), np.array(HOME), physics.time_step, physics.stiffness)
         except RuntimeError as error:
             return OperationOutcome(step.name, gripper.name, _place(name, poses[name], goals[name]), why=str(error))
-        _tune(scene, tool)
+        _prepare(scene, tool)
         scene.reset(np.zeros(3), control.start_joints())
         recorder = Recorder(self.choice.record)
         duration = scene.drive(control, [recorder] if films is not None else [])
@@ -297,8 +297,11 @@ def _moved(T: Points, by: Points) -> Points:
     return out
 
 
-def _tune(scene: SimScene, tool: GripperArm) -> None:
-    """Hard ends of the drive's stroke; and what rests sleeps, as far as this MuJoCo knows sleep: parts of many pieces cost time as they stand."""
+def _prepare(scene: SimScene, tool: GripperArm) -> None:
+    """Makes the ends of the drive's stroke hard, and lets sleep what rests: parts of many pieces cost time as they stand.
+
+    An older MuJoCo, which knows no sleep, takes longer.
+    """
     for joint in tool.hand.joints:
         stop = scene.model.joint(joint.name).id
         scene.model.jnt_solref[stop], scene.model.jnt_solimp[stop, :2] = STOP, HARD

@@ -100,9 +100,9 @@ MMGRASP_EXPORT PlanGrippersResult plan_grippers(const std::vector<AssemblyOperat
 /// The grasps that plan_grippers() tries of a segment, in the frame of the active subassembly; the palm is as wide as
 /// that of the widest gripper that may take it. `actuators`: those with the fingers that suit the primitive count.
 /// Without one, or where fingers do not suit it, there are none.
-MMGRASP_EXPORT std::vector<AssemblyGrasp> segment_grasps(const PlacedMesh& part, const MeshSegment& segment,
-                                                         const FittedPrimitive& primitive,
-                                                         const std::vector<GripperActuator>& actuators,
-                                                         const PlanGrippersOptions& options = {});
+MMGRASP_EXPORT std::vector<AssemblyGrasp> assembly_grasps(const PlacedMesh& part, const MeshSegment& segment,
+                                                          const FittedPrimitive& primitive,
+                                                          const std::vector<GripperActuator>& actuators,
+                                                          const PlanGrippersOptions& options = {});
 
 }  // namespace mmgrasp

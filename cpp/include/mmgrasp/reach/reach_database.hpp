@@ -72,8 +72,8 @@ class MMGRASP_EXPORT ReachDatabase {
   /// pairs), the group's joints and tip, the values at which the other joints are held, and every option but threads.
   static std::string cache_key(const JointGroup& arm, const ReachOptions& options);
   /// Loads `cache_dir`/<key>.reach when it is there and sound, else builds and saves it (not when stopped; in the place
-  /// of a damaged one, as its stage says). The folder is made when missing; throws IoError first when it cannot be. What
-  /// cannot be saved in it then, on a full disk, is returned all the same, and the stage says why it was not kept.
+  /// of a damaged one, as its stage says). The folder is made when missing; throws IoError first when it cannot be.
+  /// What cannot be saved in it then, on a full disk, is returned all the same, and the stage says why it was not kept.
   static ReachDatabase load_or_build(const JointGroup& arm, const ReachOptions& options, const std::string& cache_dir,
                                      const Monitor& monitor = {});
 

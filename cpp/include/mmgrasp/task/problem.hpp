@@ -19,10 +19,10 @@ struct MMGRASP_EXPORT Part {
   std::string name;               ///< Unique over the problem.
   std::vector<LinkShape> shapes;  ///< Its body, in the part's frame.
   Pose T_world_part = Pose::Identity();
-  bool target = true;         ///< False: it stays, and is an obstacle.
-  std::vector<Grasp> grasps;  ///< Candidates, best first; without postures.
-  int grasps_too_wide = 0;    ///< Candidates dropped before planning because the gripper does not open so far.
-  double mass = 0;            ///< [kg]; 0: not known, which suction cups cannot hold.
+  bool target = true;           ///< False: it stays, and is an obstacle.
+  std::vector<Grasp> grasps;    ///< Candidates, best first; without postures.
+  int grasps_too_wide = 0;      ///< Candidates dropped before planning because the gripper does not open so far.
+  double mass = 0;              ///< [kg]; 0: not known, which suction cups cannot hold.
   bool grasps_sampled = false;  ///< Others may exist: that these are impossible proves nothing of the part.
 };
 

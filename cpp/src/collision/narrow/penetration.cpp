@@ -93,8 +93,8 @@ class Polytope {
     }
     faces_.resize(kept);
     find_rim();
-    // Faces that hang together have a rim of at most two edges more than they are. Where rounding lets others, apart from
-    // them, see the point, each would get a rim of its own, and the faces become three times as many every time.
+    // Faces that hang together have a rim of at most two edges more than they are. Where rounding lets others, apart
+    // from them, see the point, each would get a rim of its own, and the faces become three times as many every time.
     if (rim_.size() > seen_.size() + 2) {
       keep_what_is_apart_from(from);
       kept = faces_.size();

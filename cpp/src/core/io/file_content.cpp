@@ -16,7 +16,7 @@
 namespace mmgrasp::detail {
 namespace {
 
-constexpr int kMostLinks = 40;  // as Linux
+constexpr int kMostLinks = 40;           // as Linux
 constexpr std::size_t kPiece = 8 << 20;  // of files, read and written between two looks for an interruption [bytes]
 
 /// Where a file is really written: links are followed, also to where nothing is yet.

@@ -50,8 +50,8 @@ bool beyond(const Reach& reach, double workspace, const Eigen::Vector3d& tool) {
   return std::hypot(std::max(aside, 0.0), tool.z() - reach.centre.z()) > reach.radius + kTolerance;
 }
 
-/// How far from the part's origin any hand that holds it may have its tool: its surface lies between the pads. The grasps
-/// that were drawn, perhaps with a standoff, are not farther.
+/// How far from the part's origin any hand that holds it may have its tool: its surface lies between the pads. The
+/// grasps that were drawn, perhaps with a standoff, are not farther.
 double farthest_tool(const PartSupplyProblem& problem, const Part& part) {
   double around = 0, drawn = 0;
   for (const LinkShape& shape : part.shapes) {

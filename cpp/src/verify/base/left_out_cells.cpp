@@ -49,7 +49,8 @@ class LeftOutCells {
     const int enough = least(mended).upper;
     if (enough < 0 || enough >= plan_.lower_bound) return;
     faults.push_back({"region-incomplete", "regions",
-                      "with " + std::to_string(serving) + " cells that they lack, from which all parts can be grasped, " +
+                      "with " + std::to_string(serving) +
+                          " cells that they lack, from which all parts can be grasped, " +
                           (enough == 1 ? "1 stop is" : std::to_string(enough) + " stops are") +
                           " enough: the least number of stops is not " + std::to_string(plan_.lower_bound)});
   }

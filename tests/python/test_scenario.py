@@ -395,3 +395,9 @@ def test_parts_larger_than_the_bin_are_told(
         caplog.clear()
         mg.load_scenario(write(edited(small, "place_region.size", size)))
         assert ("is 30 x 50 mm, larger than place_region.size" in caplog.text) == told, (size, caplog.text)
+
+
+def test_arrivals_need_samples(small: dict[str, Any], write: Callable[..., Path]) -> None:
+    scattered = edited(small, "arrival_covariance", [[1e-4, 0, 0], [0, 1e-4, 0], [0, 0, 1e-4]])
+    with pytest.raises(mg.InvalidInput, match=r"scenario\.yaml:\d+: options.robustness_samples = 0: must be positive"):
+        mg.load_scenario(write(edited(scattered, "options.robustness_samples", 0)))

@@ -21,6 +21,7 @@ from mmgrasp.part_supply.plan_reader import plan_to_check
 HARMLESS: Harmless = {
     "scenario.name": ("misspelt, other", "a title"),
     "scenario.source": ("misspelt, other", "where the scenario was read from: reported, not used"),
+    "scenario.robot.urdfs[].origin": ("misspelt, other", "where the robot was read from: its text decides"),
     "scenario.options.seed": ("any", "another seed is another search, and any answer is checked"),
     "grid.nx": ("more, less", "one column of empty cells at the border, as an arm of another reach would need"),
     "grid.ny": ("more, less", "one row of empty cells, as for columns"),

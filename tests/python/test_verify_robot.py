@@ -87,3 +87,13 @@ def test_plans_without_the_robot_as_it_was_read_are_refused(
         del plan["scenario"]["robot"][key]
     with pytest.raises(mg.InvalidInput, match=rf"scenario\.robot.*{gone[0]}"):
         mg.verify_plan(plan)
+
+
+def test_a_plan_holds_where_the_robot_lies_elsewhere(
+    small_plan_dict: dict[str, Any], small: dict[str, Any], write: Callable[..., Path]
+) -> None:
+    plan = copy.deepcopy(small_plan_dict)
+    for urdf in plan["scenario"]["robot"]["urdfs"]:
+        urdf["origin"] = "/home/colleague/" + Path(urdf["origin"]).name
+    verdict = mg.verify_plan(plan, scenario=write(small), samples=50)
+    assert verdict.ok, verdict.faults

@@ -298,6 +298,9 @@ TEST(PlanCheck, Openings) {
   EXPECT_EQ(codes_of(plan), Codes{});
   plan.clearance = 0.01001;
   EXPECT_EQ(codes_of(plan), Codes{"opening"});
+  plan.clearance = 0.01;
+  motion(plan, 0, kRetreat).opening = motion(plan, 0, kTransfer).opening;  // never lets go
+  EXPECT_TRUE(codes_of(plan).count("opening"));
 }
 
 TEST(PlanCheck, HoldingFlag) {

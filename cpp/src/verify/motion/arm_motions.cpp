@@ -105,7 +105,7 @@ class PickCheck {
         fault("opening", name(kind), text(m.opening) + " m while holding a part of width " + text(width) + " m");
       } else if (!has_part_attached(kind) && m.opening < width - kOpening) {
         fault("opening", name(kind), text(m.opening) + " m does not pass a part of width " + text(width) + " m");
-      } else if (kind <= kApproach && m.opening < context_.pregrasp_opening(width) - kOpening) {
+      } else if (!has_part_attached(kind) && m.opening < context_.pregrasp_opening(width) - kOpening) {
         fault("opening", name(kind),
               text(m.opening) + " m leaves less than the clearance of " + text(plan_.clearance) +
                   " m on each side of a part of width " + text(width) + " m");

@@ -73,7 +73,8 @@ def plan_by_hand() -> dict[str, Any]:
         "format": "mmgrasp-plan", "version": 4, "mmgrasp": "0.0.0", "outcome": "solved",
         "scenario": {
             "name": "by hand", "source": "scenario.yaml",
-            "robot": {"urdf": URDF, "srdf": "", "base": "diff_drive", "base_limits": {}, "meshes": []},
+            "robot": {"urdf": URDF, "srdf": "", "base": "diff_drive", "base_limits": {}, "meshes": [], "links": [],
+                      "urdfs": [{"urdf": URDF, "origin": "", "prefix": "", "parent_link": "", "pose": pose(0, 0, 0), "mesh_files": {}}]},
             "arm": {"joints": ["lift", "turn"], "tip_link": "tcp", "velocity_limits": [0.2, 1.0], "acceleration_limits": [1, 4]},
             "gripper": {"tool_link": "tcp", "approach": [1, 0, 0], "closing": [0, 1, 0], "max_opening": 0.1, "finger_depth": 0.03,
                         "finger_width": 0.02, "clearance": 0.005, "closing_speed": 0.1, "joints": [], "finger_links": []},

@@ -96,14 +96,16 @@ std::string rehearse_operation(const Gripper& gripper, const AssemblyGrasp& gras
   const Pose T_active_base = grasp.T_active_tool * T_tips_base;
   const double stroke = (gripper.max_opening - gripper.min_opening) / 2;
   const double held = std::min((grasp.opening - gripper.min_opening) / 2 + kOff, stroke);
-  const double opened = std::min(held + grasp.clearance, stroke);
-  Poses approach, way, retreat;
+  // Bodies that just touch are free, as where finger lengths are found.
+  const double opened = std::clamp((grasp.opening - gripper.min_opening) / 2 + grasp.clearance - kOff, held, stroke);
+  Poses approach, arrival, way, retreat;
   const Poses moves = detail::motion_looks(operation.motion, detail::middle_of(operation.active), kStep, kTurn);
   for (const Pose& move : moves) way.push_back(move * T_active_base);
   for (double back = 0; back < kRetreat; back += kStep) {
     Pose away = Pose::Identity();
     away.translation().z() = -back;
     approach.push_back(T_active_base * away);
+    arrival.push_back(moves.front() * T_active_base * away);
     retreat.push_back(moves.back() * T_active_base * away);
   }
   struct Stage {
@@ -114,7 +116,8 @@ std::string rehearse_operation(const Gripper& gripper, const AssemblyGrasp& gras
   };
   const Poses at_grasp{T_active_base};
   for (const Stage& stage :
-       {Stage{"the approach", operation.active, opened, approach}, Stage{"the grasp", operation.active, held, at_grasp},
+       {Stage{"the approach", operation.active, opened, approach},
+        Stage{"the approach", operation.passive, opened, arrival}, Stage{"the grasp", operation.active, held, at_grasp},
         Stage{"the motion", operation.passive, held, way}, Stage{"letting go", operation.passive, opened, retreat}}) {
     if (stage.parts.empty()) continue;
     const Eigen::VectorXd fingers = group.robot().values({{"finger_1_joint", std::max(stage.joint, 0.0)}});

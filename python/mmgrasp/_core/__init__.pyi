@@ -6590,7 +6590,7 @@ class MinimalGrippersResult:
     @property
     def preference_finished(self) -> bool:
         """
-        Of preferred_grippers: for every better segment of a part it is decided whether the set stays as good with it. False: max_nodes or the time limit ended first.
+        What preferred_grippers set out for: for every better segment of a part it is decided whether the set stays as good with it. False: max_nodes or the time limit ended first.
         """
     @property
     def requirement_of_part(self) -> list[int]:

@@ -162,7 +162,9 @@ def _read_scenario(
     covariance = _read_covariance(root["arrival_covariance"]) if "arrival_covariance" in root else None
     options = _read_options(root, "options", _core._supply_option_table(), {"positioning_uncertainty"})
     if covariance is not None and options.get("robustness_samples", 1) == 0:
-        root["options"]["robustness_samples"].fail("must be positive with an arrival_covariance: so many arrivals are drawn")
+        root["options"]["robustness_samples"].fail(
+            "must be positive with an arrival_covariance: so many arrivals are drawn"
+        )
     reach = _read_options(root, "reach", _core._reach_option_table(), set())
     if reach.get("samples", LEAST_SAMPLES) < LEAST_SAMPLES:
         root["reach"]["samples"].fail(

@@ -12,7 +12,7 @@
 namespace mmgrasp {
 namespace {
 
-double tried_one_by_one(const std::vector<detail::Turn>& turns, double least, double most, double step) {
+double tried_one_by_one(const std::vector<detail::HelixTurn>& turns, double least, double most, double step) {
   double best = 0, coherent = -1;
   for (int k = 0; least + k * step <= most; ++k) {
     for (const double tried : {least + k * step, -(least + k * step)}) {
@@ -29,7 +29,7 @@ TEST(Unwinding, EqualsTryingEveryWinding) {
   Rng rng(3);
   for (int trial = 0; trial < 30; ++trial) {
     const double winding = (trial % 2 ? -1 : 1) * rng.uniform(300, 6000), noise = 0.05 * trial;
-    std::vector<detail::Turn> turns;
+    std::vector<detail::HelixTurn> turns;
     for (int i = 0; i < 400; ++i) {
       const double height = rng.uniform(-0.03, 0.05);
       turns.push_back({winding * height + noise * rng.normal(), height, rng.uniform(1e-4, 1e-3), i});

@@ -137,6 +137,24 @@ TEST(FingerLengthRange, RoofsBoundFingersFromAbove) {
   EXPECT_FALSE(finger_length_range(grasp, operation).free);
 }
 
+TEST(FingerLengthRange, OpenFingersComeToThePartWhereTheMotionBegins) {
+  // Walls beside the part at the beginning only, where fingers are closed free of them.
+  AssemblyOperation operation;
+  operation.active = {{"bar", box({-0.005, -0.02, -0.01}, {0.005, 0.02, 0.01}), Pose::Identity()}};
+  AssemblyGrasp grasp;
+  grasp.opening = 0.01;
+  grasp.palm_radius = 0.005;
+  grasp.T_active_tool = from_above(0.0);
+  const double closed = 0.005 + grasp.thickness, open = closed + grasp.clearance;
+  for (const double wall : {closed + 0.5 * grasp.clearance, open + 1e-4}) {
+    operation.passive = {{"wall", box({wall, -0.05, 0.03}, {wall + 0.006, 0.05, 0.09}), Pose::Identity()}};
+    operation.motion = {at(0, 0, 0.05), at(0, 0, -0.1)};
+    const FingerLengthRange range = finger_length_range(grasp, operation);
+    EXPECT_EQ(range.free, wall > open) << wall;
+    EXPECT_EQ(range.longest_by == "wall at the start", wall < open) << range.longest_by;
+  }
+}
+
 TEST(FingerLengthRange, TipsInsideASolidAreBlocked) {
   AssemblyOperation operation;
   operation.active = {{"plate", box({-0.01, -0.05, -0.001}, {0.01, 0.05, 0.001}), Pose::Identity()}};
@@ -176,7 +194,7 @@ TEST(FingerLengthRange, AgreesWithDrawnPoints) {
     for (int i = 0; i < 20000; ++i) {
       const Eigen::Vector3d p = low + size.cwiseProduct(Eigen::Vector3d(share(), share(), share()));
       for (const double way : {0.0, share()}) {
-        const double h = p.z() - drop * way, open_by = way > 0 ? 0 : grasp.clearance;
+        const double h = p.z() - drop * way, open_by = way > 0 && way < 1 ? 0 : grasp.clearance;
         if (h <= 0) continue;
         if (p.head<2>().norm() < grasp.palm_radius) drawn.palm = std::max(drawn.palm, h);
         for (int f = 0; f < grasp.fingers; ++f) {

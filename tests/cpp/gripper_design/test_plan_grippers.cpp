@@ -350,6 +350,27 @@ TEST(RehearseOperation, MeetsWhatTooShortFingersWould) {
   EXPECT_EQ(rehearse_operation(gripper, grasp, order[0]), "base meets peg during the motion");
 }
 
+TEST(RehearseOperation, OpenFingersMayJustTouchAndComeWhereTheMotionBegins) {
+  AssemblyOperation o;
+  o.active = {{"bar", block({0.005, 0.02, 0.01}), Pose::Identity()}};
+  AssemblyGrasp grasp;
+  grasp.opening = 0.01;
+  grasp.T_active_tool.linear() = Eigen::Vector3d(1, -1, -1).asDiagonal();
+  Gripper gripper;
+  gripper.max_opening = 0.02;
+  gripper.finger_length = 0.08;
+  const double open = 0.005 + grasp.clearance + gripper.finger_thickness;
+  const auto walls_at = [&](double gap, double height) {
+    o.passive = {{"wall", block({0.003, 0.05, 0.03}), at(gap + 0.003, 0, height)}};
+    return rehearse_operation(gripper, grasp, o);
+  };
+  o.motion = {at(0, 0, 0.3), at(0, 0, 0)};
+  EXPECT_EQ(walls_at(open, 0), "");  // just touched when the bar is let go
+  EXPECT_EQ(walls_at(open - 1e-4, 0), "finger_1 meets wall during letting go");
+  EXPECT_EQ(walls_at(open, 0.3), "base meets wall during the motion");  // the palm, which comes down past it
+  EXPECT_EQ(walls_at(open - 1e-4, 0.3), "finger_1 meets wall during the approach");
+}
+
 TEST(RehearseOperation, EndsWhenInterrupted) {
   const PlanGrippersResult& found = ring_plan();
   CancelToken stop;

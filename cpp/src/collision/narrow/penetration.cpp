@@ -156,7 +156,7 @@ class Polytope {
       for (int e = 0; e < 3; ++e) cross_edge(face.corner[e], face.corner[(e + 1) % 3]);
   }
 
-  // Of the faces that see a point only those stay seen that hang together with one of them, by its corners.
+  // Faces that see a point stay seen only where they hang together with one of them, by its corners.
   void keep_what_is_apart_from(const std::array<int, 3>& from) {
     const auto first = std::find_if(seen_.begin(), seen_.end(), [&](const Face& face) { return face.corner == from; });
     if (first == seen_.end()) return;

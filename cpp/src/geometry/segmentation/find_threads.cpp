@@ -178,7 +178,7 @@ std::vector<int> edges_along(const FaceGraph& graph, const std::vector<int>& all
 /// of rings are spread evenly over the turn whatever the pitch, and so are edges that noise makes.
 std::optional<std::vector<int>> edges_in_phase(const FaceGraph& graph, const std::vector<int>& edges, Helix& helix) {
   const Vector3d side = helix.axis.unitOrthogonal(), across = helix.axis.cross(side);
-  std::vector<Turn> turns;
+  std::vector<HelixTurn> turns;
   double length = 0, radius = 0;
   Range heights;
   for (const int k : edges) {
@@ -194,10 +194,10 @@ std::optional<std::vector<int>> edges_in_phase(const FaceGraph& graph, const std
   // The steps grow with the height looked at: without an end where the edges lie on the axis itself, as those of a bore
   // may with noise.
   const double middle = (heights.low + heights.high) / 2;
-  std::vector<Turn> near;
+  std::vector<HelixTurn> near;
   Range looked_at;
   length = 0;
-  for (const Turn& t : turns) {
+  for (const HelixTurn& t : turns) {
     if (std::abs(t.height - middle) > kLookedAt * radius) continue;
     near.push_back(t);
     length += t.length;
@@ -219,7 +219,7 @@ std::optional<std::vector<int>> edges_in_phase(const FaceGraph& graph, const std
   helix.pitch_per_radian = 1 / best;
   const double phase = std::arg(unwound(turns, best));
   std::vector<int> out;
-  for (const Turn& t : turns) {
+  for (const HelixTurn& t : turns) {
     if (std::abs(shortest_turn(t.angle - best * t.height - phase)) < kPhase) out.push_back(t.edge);
   }
   return out;

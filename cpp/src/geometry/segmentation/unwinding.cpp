@@ -22,15 +22,15 @@ std::array<double, 4> cubic_shares(double t) {
 }
 
 /// |unwound()| at the windings `first` + k `step`, k = 0 ... count - 1.
-std::vector<double> lengths_unwound(const std::vector<Turn>& turns, double first, double step, int count) {
+std::vector<double> lengths_unwound(const std::vector<HelixTurn>& turns, double first, double step, int count) {
   std::size_t size = 64;
   while (size < static_cast<std::size_t>(count) * kCellsPerWinding) size *= 2;
   double low = kInfinity;
-  for (const Turn& t : turns) low = std::min(low, t.height);
+  for (const HelixTurn& t : turns) low = std::min(low, t.height);
   const double cells_per_metre = std::abs(step) * static_cast<double>(size) / (2 * kPi);
   std::vector<Complex> cells(size), spectrum;
   InterruptionPoll poll;
-  for (const Turn& t : turns) {
+  for (const HelixTurn& t : turns) {
     poll();
     const double place = (t.height - low) * cells_per_metre, cell = std::floor(place);
     const Complex arrow = std::polar(t.length, t.angle - first * (t.height - low));
@@ -50,13 +50,13 @@ std::vector<double> lengths_unwound(const std::vector<Turn>& turns, double first
 
 }  // namespace
 
-Complex unwound(const std::vector<Turn>& turns, double winding) {
+Complex unwound(const std::vector<HelixTurn>& turns, double winding) {
   Complex sum = 0;
-  for (const Turn& t : turns) sum += std::polar(t.length, t.angle - winding * t.height);
+  for (const HelixTurn& t : turns) sum += std::polar(t.length, t.angle - winding * t.height);
   return sum;
 }
 
-double longest_unwound(const std::vector<Turn>& turns, double least, double most, double step) {
+double longest_unwound(const std::vector<HelixTurn>& turns, double least, double most, double step) {
   const int count = static_cast<int>(std::floor((most - least) / step)) + 1;
   const std::vector<double> forth = lengths_unwound(turns, least, step, count);
   const std::vector<double> back = lengths_unwound(turns, -least, -step, count);

@@ -127,6 +127,11 @@ class Range {
     for (const PlacedMesh& part : operation_.active) {
       look(part, from_active * part.pose, from_active * part.pose, opening_, true, 0, "the grasp");
     }
+    if (operation_.motion.size() > 1) {  // fingers come open to where the motion begins
+      const Eigen::Isometry3d at_start = from_passive(operation_.motion.front());
+      for (const PlacedMesh& part : operation_.passive)
+        look(part, at_start * part.pose, at_start * part.pose, opening_, true, 0, "the start");
+    }
     const Eigen::Isometry3d at_end = from_passive(operation_.motion.back());
     for (const PlacedMesh& part : operation_.passive) {
       look(part, at_end * part.pose, at_end * part.pose, opening_, true, 0, "the end");

@@ -47,7 +47,7 @@ class DrawnCells {
 /// Cells of one region, and those outside of it that were searched for its tray: beside it, and some farther off.
 class RegionCells : public SearchedCells {
  public:
-  /// Of the cells farther off at each heading that the region has, `looks` are drawn, at other headings `samples`.
+  /// Cells farther off are drawn: `looks` at each heading that the region has, `samples` at others.
   RegionCells(const PlanToCheck& plan, const CheckedRegion& region, int looks, int samples, Rng& rng)
       : SearchedCells(plan, region), grid_(plan.grid) {
     std::vector<bool> known(static_cast<std::size_t>(grid_.nx) * grid_.ny, false);

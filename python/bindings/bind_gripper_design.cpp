@@ -213,7 +213,8 @@ void bind_result(py::module_& m) {
       .def_readonly("changes", &R::changes, "How often the gripper changes from part to part.")
       .def_readonly("changes_bound", &R::changes_bound, "Proven: no set of the same cost needs fewer.")
       .def_readonly("preference_finished", &R::preference_finished,
-                    "What preferred_grippers set out for: for every better segment of a part it is decided whether the set stays as "
+                    "What preferred_grippers set out for: for every better segment of a part it is decided whether the "
+                    "set stays as "
                     "good with it. False: max_nodes or the time limit ended first.")
       .def_readonly("candidates", &R::candidates, "Grippers chosen among, none doing only what another does.")
       .def_readonly("uncovered", &R::uncovered, "Parts that no gripper takes.")

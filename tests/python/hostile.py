@@ -49,7 +49,7 @@ PARTS = {
                   "bad_arguments argument_errors python_arguments odd_objects numbers number_walk", ("number_walk.py",)),
     "limits": Part("limits, threads, memory, forks", "limits interpreter threads forks small_processes"),
     "command": Part("options and streams of the command", "cli_doors cli_options command_fuzz", ("command_fuzz.py 400",)),
-    "places": Part("places that are written", "output_places output_commands killed_runs", ("killed_runs.py 60",)),
+    "places": Part("places that are written", "output_places output_folder output_commands killed_runs", ("killed_runs.py 60",)),
     "stops": Part("Ctrl-C, signals, costly calls", "interrupt signals long_work costly_calls"),
     "verify": Part("changed plans and scenarios", "verify_files plan_mutations mutation_shares",
                    ("mutation_shares.py 4",)),

@@ -108,7 +108,7 @@ ELSEWHERE = {
     "steps that paths and edges are walked in, sample periods": "test_far_out.py: steps_that_cannot_be_counted",
     "folders of databases and capability maps": "test_module_files.py: def test_a_database_does_not_replace_a_folder_with_more_in_it(",
     "places that are written": "test_output_places.py: def test_places_that_cannot_be_written_are_found_at_once(",
-    "what others write in the meantime": "test_output_places.py: def test_what_somebody_writes_in_the_meantime_is_not_replaced(",
+    "what others write in the meantime": "test_output_folder.py: def test_what_somebody_writes_in_the_meantime_is_not_replaced(",
     "route search": "test_base_route.cpp: TEST(BaseRoute, ASearchThatRanOutSaysSo)",
     "`mmgrasp grippers`": "test_grippers_command.py: def test_mesh_files_that_cannot_be_parts(",
     "`minimal_grippers`, `solve_set_cover`": "test_minimal_grippers.cpp: RefusesCostsThatTheProofWouldNotTellApart)",

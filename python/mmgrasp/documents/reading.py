@@ -30,7 +30,7 @@ LONGEST_NAME = 200  # names become file names, and lines on a terminal
 DEEPEST = 50  # levels of a file
 LARGEST_SCENARIO = 4_000_000  # [bytes]
 LARGEST_PLAN = 1_000_000_000  # [bytes]
-MOST_VALUES = 50_000_000  # of a plan, so that reading it takes memory in proportion to its size
+MOST_VALUES = 50_000_000  # of a JSON text, so that reading it takes memory in proportion to its size
 
 RENAMED = {
     "carry": "place_region",
@@ -311,7 +311,7 @@ def read_json(path: Path) -> Document:
     """Parses a JSON file; syntax errors name the line. Keys given twice, NaN and infinity are refused."""
     text, shown = read_text(path, LARGEST_PLAN), printable(str(path))
     if (values := sum(map(text.count, ",[{"))) > MOST_VALUES:
-        raise InvalidInput(f"{shown}: holds about {values:,} values; a plan has at most {MOST_VALUES:,}")
+        raise InvalidInput(f"{shown}: holds about {values:,} values, more than {MOST_VALUES:,}")
 
     def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
         out = dict(pairs)

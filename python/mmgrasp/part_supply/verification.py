@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -128,13 +129,12 @@ def differences(was: Any, now: Any, path: str = "", limit: int = 20) -> list[tup
     return out
 
 
-IGNORED = {".name", ".source", ".options.seed"}
+# A scan's map and a robot's URDF are compared by what they hold.
+IGNORED = re.compile(r"\.name|\.source|\.options\.seed|\.scans\[\d+\]\.map|\.robot\.urdfs\[\d+\]\.origin")
 
 
 def _walk(was: Any, now: Any, path: str) -> Iterator[tuple[str, Any, Any]]:
-    if path in IGNORED or (path.startswith(".scans[") and path.endswith("].map")):  # its sha256 decides
-        return
-    if path.startswith(".robot.urdfs[") and path.endswith("].origin"):  # its text decides
+    if IGNORED.fullmatch(path):
         return
     if isinstance(was, dict) and isinstance(now, dict):
         for key in sorted(was.keys() | now.keys()):

@@ -52,7 +52,4 @@ class GraspSearch {
   IkTolerance tolerance_;
 };
 
-/// Cells left out of the regions that would spare a stop (left_out_cells.cpp).
-void check_left_out_cells(const Context& context, const Pools& pools, Faults& faults, std::size_t& configurations);
-
 }  // namespace mmgrasp::verify::detail

@@ -1,4 +1,6 @@
 // Cells that regions lack and that would spare a stop. A few are enough for that, too few for samples to find.
+#include "verify/base/left_out_cells.hpp"
+
 #include <algorithm>
 #include <set>
 #include <utility>

@@ -7,6 +7,7 @@
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/parallel.hpp"
 #include "verify/base/grasp_search.hpp"
+#include "verify/base/left_out_cells.hpp"
 #include "verify/base/searched_cells.hpp"
 #include "verify/context.hpp"
 

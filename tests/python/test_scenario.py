@@ -395,3 +395,11 @@ def test_parts_larger_than_the_bin_are_told(
         caplog.clear()
         mg.load_scenario(write(edited(small, "place_region.size", size)))
         assert ("is 30 x 50 mm, larger than place_region.size" in caplog.text) == told, (size, caplog.text)
+
+
+def test_only_listed_grasps_are_all_that_there_are(small: dict[str, Any], write: Callable[..., Path]) -> None:
+    """What is proven of listed grasps is proven of the part; of sampled ones others may exist."""
+    down = {"pose": {"xyz": [0, 0, 0.01], "rpy": [0, 1.570796, 0]}, "opening": 0.05}
+    for type_, sampled in (({"box": [0.03, 0.05, 0.07]}, True), ({"box": [0.03, 0.05, 0.07], "grasps": [down]}, False)):
+        parts = mg.load_scenario(write(edited(small, "part_types.bracket", type_))).trays[0].tray.parts
+        assert {part.grasps_sampled for part in parts} == {sampled}

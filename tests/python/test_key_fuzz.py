@@ -11,7 +11,8 @@ import pytest
 
 import key_fuzz
 import mmgrasp as mg
-from key_fuzz import DOORS, PLANS, WRONG, Door, fuzz, is_sound, listed, message_fault
+from key_fuzz import DOORS, Door, fuzz, is_sound, listed, message_fault
+from key_fuzz_tables import PLANS, WRONG
 
 # Where maps are read for each, or a plan is made first, there is no quick size.
 QUICK = [(door, 80) for door in DOORS if door not in ("scanned", "plan")]

@@ -82,8 +82,8 @@ Unlocked::Unlocked() : state_(PyEval_SaveThread()) {
 
 Unlocked::~Unlocked() {
   if (must_sleep()) sleep_for_ever();
-  --g_waiting;
   PyEval_RestoreThread(state_);
+  --g_waiting;  // not before: while it counts, the interpreter does not end, and a thread that it kills here is a crash
 }
 
 void LongCall::hand_over_progress() {

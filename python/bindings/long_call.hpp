@@ -20,6 +20,19 @@ namespace mmgrasp::python {
 
 namespace py = pybind11;
 
+/// Without the GIL while it lives, for work of at most some tenths of a second: as with a LongCall, the end of the
+/// interpreter waits for it, and its thread goes to sleep then.
+class Unlocked {
+ public:
+  Unlocked();
+  ~Unlocked();
+  Unlocked(const Unlocked&) = delete;
+  Unlocked& operator=(const Unlocked&) = delete;
+
+ private:
+  PyThreadState* state_;
+};
+
 /// Runs a long call on a thread of its own, without the GIL. The calling thread waits, hands progress to Python and
 /// looks for signals every 30 ms: Ctrl-C sets the cancel token, waits for the call to end, and then raises
 /// KeyboardInterrupt.
@@ -54,7 +67,7 @@ class LongCall {
     });
     const bool python_error = !wait();
     {
-      py::gil_scoped_release release;
+      const Unlocked unlocked;
       thread.join();
     }
     if (python_error) throw py::error_already_set();
@@ -90,19 +103,6 @@ auto interruptible(Work&& work) {
       return work();
   });
 }
-
-/// Without the GIL while it lives, for work of at most some tenths of a second: as with a LongCall, the end of the
-/// interpreter waits for it, and its thread goes to sleep then.
-class Unlocked {
- public:
-  Unlocked();
-  ~Unlocked();
-  Unlocked(const Unlocked&) = delete;
-  Unlocked& operator=(const Unlocked&) = delete;
-
- private:
-  PyThreadState* state_;
-};
 
 /// Registers with Python's atexit that long calls of other threads end before the interpreter does.
 void end_calls_at_exit();

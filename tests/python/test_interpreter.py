@@ -90,7 +90,8 @@ folder = Path(tempfile.mkdtemp())
 def work():
     while True:
         {work}
-threading.Thread(target=work, daemon=True).start()
+for _ in range({threads}):
+    threading.Thread(target=work, daemon=True).start()
 time.sleep(0.5)
 print("leaving")
 """
@@ -105,7 +106,16 @@ LONG_CALLS = {
 
 @pytest.mark.parametrize("work", LONG_CALLS.values(), ids=LONG_CALLS)
 def test_a_daemon_thread_inside_a_call_does_not_crash_the_end(work: str) -> None:
-    script = AT_EXIT.format(tests=str(REPOSITORY / "tests" / "python"), work=work)
+    ends_silently(work, 1)
+
+
+def test_threads_that_wait_for_the_interpreter_while_it_ends_do_not_crash() -> None:
+    """Three that come back from a short call at any moment: the last one in the queue is the one that was killed."""
+    ends_silently("ARM.fk_batch(Q[None])", 3)
+
+
+def ends_silently(work: str, threads: int) -> None:
+    script = AT_EXIT.format(tests=str(REPOSITORY / "tests" / "python"), work=work, threads=threads)
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60)
     assert (done.returncode, done.stdout, done.stderr) == (0, "leaving\n", "")
 

@@ -42,11 +42,15 @@ void bind_checked_parts(py::module_& m) {
            py::arg("pose"), py::arg("opening"),
            "`pose` (4, 4): T_object_hand; `opening`: between the pads while holding [m].");
   py::class_<CheckedPart>(m, "CheckedPart", "A part and the grasps that a plan may use.")
-      .def(py::init([](CheckedBody b, std::string tray, bool target, std::vector<CheckedGrasp> grasps, double mass) {
-             return CheckedPart{std::move(b), std::move(tray), target, std::move(grasps), mass};
+      .def(py::init([](CheckedBody b, std::string tray, bool target, std::vector<CheckedGrasp> grasps, double mass,
+                       bool scanned) {
+             return CheckedPart{std::move(b), std::move(tray), target, std::move(grasps), mass, scanned};
            }),
            py::arg("body"), py::arg("tray"), py::arg("target"), py::arg("grasps"), py::arg("mass") = 0.0,
-           "`tray`: name of the tray it lies in; a part that is no `target` stays; `mass` [kg], 0: not known.");
+           py::arg("scanned") = false,
+           "`tray`: name of the tray it lies in; a part that is no `target` stays; `mass` [kg], 0: not known; "
+           "`scanned`: "
+           "its\nbody is a cover around what sensors saw, from which the widths of its grasps are not to be told.");
   py::class_<CheckedCup>(m, "CheckedCup", "A suction cup as the plan file describes it.")
       .def(py::init([](const ArrayLike& position, double radius) {
              return CheckedCup{vector3_argument(position, "position"), radius};
@@ -351,14 +355,15 @@ void bind_verify(py::module_& top) {
   m.def("overlapping_bodies", &overlapping_bodies, py::arg("bodies"),
         "Index pairs of the bodies that overlap by more than 1e-4 m; those that just touch do not.");
   m.def(
-      "width_unlike_opening",
+      "pads_unlike_grasp",
       [](const Hand& hand, const std::vector<LinkShape>& part, const CheckedGrasp& grasp) {
-        return width_unlike_opening(
-            {hand.approach, hand.closing, hand.max_opening, hand.finger_depth, hand.finger_width}, part, grasp);
+        const CheckedPads pads{hand.approach,     hand.closing,      hand.max_opening,
+                               hand.finger_depth, hand.finger_width, hand.clearance};
+        return pads_unlike_grasp(pads, part, grasp);
       },
       py::arg("hand"), py::arg("part"), py::arg("grasp"),
-      "How far apart [m] pads of the hand's size are when they close on the part at the grasp, where that is not the "
-      "grasp's opening, within 3 mm or a tenth of it; None where it is.");
+      "How pads of the hand's size that close on the part otherwise meet it than the grasp says, '' where they do not: "
+      "each\nmust stop half the opening from the hand's middle, within 1.5 mm or a twentieth of the opening.");
   m.def(
       "broken_seal",
       [](const Hand& hand, const std::vector<LinkShape>& part, const CheckedGrasp& grasp) {

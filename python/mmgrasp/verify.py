@@ -29,5 +29,5 @@ from ._core.verify import (
     check_path as check_path,
     check_plan as check_plan,
     overlapping_bodies as overlapping_bodies,
-    width_unlike_opening as width_unlike_opening,
+    pads_unlike_grasp as pads_unlike_grasp,
 )

@@ -86,7 +86,7 @@ BAD = [
     (
         "part_types.bracket.grasps",
         [{"pose": {"xyz": [0, 0, 0]}, "opening": 0.05}, {"pose": {"xyz": [0, 0, 0]}, "opening": 0.03}],
-        ["part_types.bracket.grasps[1].opening", "0.03", "meet part type bracket at 0.05 m"],
+        ["part_types.bracket.grasps[1].opening", "0.03", "meet the part at 0.05"],
     ),
     ("trays.0.parts.type", "braket", ["trays[0].parts.type", "did you mean bracket?"]),
     ("trays.0.parts.grid", [3, 0], ["trays[0].parts.grid[1]", ">= 1"]),

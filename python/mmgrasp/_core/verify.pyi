@@ -7,7 +7,7 @@ import mmgrasp._core
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['CheckedBody', 'CheckedCup', 'CheckedDriveBy', 'CheckedFinger', 'CheckedGrasp', 'CheckedGrid', 'CheckedIntersection', 'CheckedLegValues', 'CheckedMotion', 'CheckedPart', 'CheckedPick', 'CheckedRegion', 'CheckedStop', 'CheckedSuction', 'CheckedTray', 'CheckedUnloading', 'Fault', 'PathCheckResult', 'PlanCheckResult', 'PlanToCheck', 'StopRate', 'broken_seal', 'check_path', 'check_plan', 'overlapping_bodies', 'width_unlike_opening']
+__all__: list[str] = ['CheckedBody', 'CheckedCup', 'CheckedDriveBy', 'CheckedFinger', 'CheckedGrasp', 'CheckedGrid', 'CheckedIntersection', 'CheckedLegValues', 'CheckedMotion', 'CheckedPart', 'CheckedPick', 'CheckedRegion', 'CheckedStop', 'CheckedSuction', 'CheckedTray', 'CheckedUnloading', 'Fault', 'PathCheckResult', 'PlanCheckResult', 'PlanToCheck', 'StopRate', 'broken_seal', 'check_path', 'check_plan', 'overlapping_bodies', 'pads_unlike_grasp']
 class CheckedBody:
     """
     A body of the scene as the plan file describes it.
@@ -28,9 +28,10 @@ class CheckedPart:
     """
     A part and the grasps that a plan may use.
     """
-    def __init__(self, body: CheckedBody, tray: str, target: bool, grasps: collections.abc.Sequence[CheckedGrasp], mass: float = 0.0) -> None:
+    def __init__(self, body: CheckedBody, tray: str, target: bool, grasps: collections.abc.Sequence[CheckedGrasp], mass: float = 0.0, scanned: bool = False) -> None:
         """
-        `tray`: name of the tray it lies in; a part that is no `target` stays; `mass` [kg], 0: not known.
+        `tray`: name of the tray it lies in; a part that is no `target` stays; `mass` [kg], 0: not known; `scanned`: its
+        body is a cover around what sensors saw, from which the widths of its grasps are not to be told.
         """
 class CheckedCup:
     """
@@ -701,7 +702,8 @@ def overlapping_bodies(bodies: collections.abc.Sequence[CheckedBody]) -> list[tu
     """
     Index pairs of the bodies that overlap by more than 1e-4 m; those that just touch do not.
     """
-def width_unlike_opening(hand: mmgrasp._core.Hand, part: collections.abc.Sequence[mmgrasp._core.LinkShape], grasp: CheckedGrasp) -> float | None:
+def pads_unlike_grasp(hand: mmgrasp._core.Hand, part: collections.abc.Sequence[mmgrasp._core.LinkShape], grasp: CheckedGrasp) -> str:
     """
-    How far apart [m] pads of the hand's size are when they close on the part at the grasp, where that is not the grasp's opening, within 3 mm or a tenth of it; None where it is.
+    How pads of the hand's size that close on the part otherwise meet it than the grasp says, '' where they do not: each
+    must stop half the opening from the hand's middle, within 1.5 mm or a twentieth of the opening.
     """

@@ -131,6 +131,7 @@ def _read_scene(plan: checks.PlanToCheck, scenario: Node) -> None:
         )
         for tray in scenario["trays"].elements()
     }
+    scanned = {scan["tray"].raw for scan in scenario["scans"].elements()} if "scans" in scenario else set()
     parts = []
     for node in scenario["parts"].elements():
         grasps = [
@@ -140,7 +141,8 @@ def _read_scene(plan: checks.PlanToCheck, scenario: Node) -> None:
         if tray.string() not in plan.trays:
             tray.fail("no such tray")
         mass = node["mass"].number(above=0) if "mass" in node else 0.0
-        parts.append(checks.CheckedPart(_read_body(node), tray.raw, node["target"].boolean(), grasps, mass))
+        target = node["target"].boolean()
+        parts.append(checks.CheckedPart(_read_body(node), tray.raw, target, grasps, mass, tray.raw in scanned))
     plan.parts = parts
     plan.allowed_collisions = allowed_collisions(scenario)
     plan.padded = "padding" in scenario and _pads(scenario["padding"])

@@ -117,18 +117,21 @@ def _improbable(root: Node, scan: Node, sdf: ProbabilisticSdf) -> list[checks.Fa
                 checks.Fault("grasp-probability", where, "its pads meet no surface of the map, or slip on it")
             )
             continue
-        probability, between = found
+        probability, between, beside = found
         if abs(probability - claimed) > _MOST_OFF or claimed != grasp["quality"].number():
             text = f"the plan says {claimed:.3f} for its grasp, rays through the map give {probability:.3f}"
             faults.append(checks.Fault("grasp-probability", where, text))
         if abs(between - width) > _MOST_WIDER:
             text = f"its grasp says {width:.4f} m, in the map the pads meet the part at {between:.4f} m"
             faults.append(checks.Fault("grasp-opening", where, text))
+        if beside > _MOST_WIDER:
+            text = f"in the map the pads meet the part {beside:.4f} m beside the middle of the hand, whose fingers close alike"
+            faults.append(checks.Fault("grasp-opening", where, text))
     return faults
 
 
-def _pads(root: Node, scan: Node, part: Node, grasp: Node, sdf: ProbabilisticSdf) -> tuple[float, float] | None:
-    """(4.9) of P3 with the criteria of docs/methods/grasp.md, and what is between the surfaces that the pads meet [m]."""
+def _pads(root: Node, scan: Node, part: Node, grasp: Node, sdf: ProbabilisticSdf) -> tuple[float, float, float] | None:
+    """(4.9) of P3 with the criteria of docs/methods/grasp.md, what is between the surfaces that the pads meet, and how far their middle is from the hand's [m]."""
     gripper = root["scenario"]["gripper"]
     options = {key: default for key, (default, _) in _core._synthesis_option_table().items()}
     options |= dict(scan["grasp_options"].raw)
@@ -170,4 +173,8 @@ def _pads(root: Node, scan: Node, part: Node, grasp: Node, sdf: ProbabilisticSdf
     off = np.linalg.norm(np.cross((low + high) / 2 - a, b - a)) / np.linalg.norm(b - a)
     centring = max(0.0, 1 - off / ((high - low).max() / 2))
     weights = [options[f"{key}_weight"] for key in ("angle", "placement", "centring", "certainty")]
-    return float(np.dot(weights, [angle, placement, centring, sure])), float(wide - d_a - d_b)
+    return (
+        float(np.dot(weights, [angle, placement, centring, sure])),
+        float(wide - d_a - d_b),
+        float(abs(d_a - d_b) / 2),
+    )

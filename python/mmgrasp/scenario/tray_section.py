@@ -118,19 +118,16 @@ def _check_they_hold(node: Node, name: str, shapes: list[LinkShape], grasps: lis
 
 
 def _check_openings(node: Node, name: str, shapes: list[LinkShape], gripper: Hand) -> None:
-    """Refuses openings that are not the part's width between the pads, by the rule of `verify`."""
+    """Refuses grasps whose pads meet the part otherwise than their opening says, by the rule of `verify`."""
     if not (gripper.finger_depth > 0 and gripper.finger_width > 0):
         return
     for entry in node.elements():
         opening = entry["opening"].number(least=0)
         if opening > gripper.max_opening:
             continue  # left out as too wide
-        width = checks.width_unlike_opening(gripper, shapes, checks.CheckedGrasp(entry["pose"].pose(), opening))
-        if width is not None:
-            entry["opening"].fail(
-                f"the fingers, of {gripper.finger_depth:g} x {gripper.finger_width:g} m, meet part type {name} at {width:.4g} m: "
-                "the opening is the width of the part between them"
-            )
+        unlike = checks.pads_unlike_grasp(gripper, shapes, checks.CheckedGrasp(entry["pose"].pose(), opening))
+        if unlike:
+            entry["opening"].fail(f"does not hold part type {name}: {unlike}")
 
 
 def read_tray(node: Node, types: dict[str, PartType], gripper: Hand, scans: ScanReader) -> TraySetup:

@@ -31,8 +31,12 @@ struct MMGRASP_EXPORT GraspSamplerOptions {
 /// - T_object_hand turns Hand::approach into the direction the hand moves in and Hand::closing into the line of
 /// contact.
 /// - A single box, cylinder, sphere or capsule is sampled in closed form; anything else by rays through its triangles:
-///   solids from outside to outside of their union, open surfaces from wall to wall.
-/// - Pairs wider than max_opening are counted in `too_wide`. A part that leaves less than the wanted clearance is kept
+///   solids from outside to outside of their union, open surfaces from wall to wall. There the pads, flat and of
+///   finger_depth x finger_width, rest on the outermost points under them: that gives opening and middle of the grasp.
+///   Left out are those at which what they touch is steeper than friction allows, or lies so far apart on the two sides
+///   that the part would turn. What leaves no room for a finger behind a pad counts as under it.
+/// - Pairs wider than max_opening are counted in `too_wide`, those too wide under the pads from everywhere as well. A
+/// part that leaves less than the wanted clearance is kept
 ///   (the clearance shrinks, see Hand::pregrasp_opening) with a lower quality.
 /// - Quality has five parts of weight 0.5: `alignment` of the normals with the contact line, `centring` of that line on
 ///   the centre of mass, `support` (share of the pad on a flat face), `insertion` (little material behind the pads) and

@@ -111,7 +111,7 @@ MMGRASP_EXPORT std::vector<std::pair<std::size_t, std::size_t>> overlapping_bodi
 /// The fingers of a parallel gripper: unit axes in the tool frame, size of the pads [m].
 struct CheckedPads {
   Eigen::Vector3d approach, closing;
-  double max_opening, finger_depth, finger_width;
+  double max_opening, finger_depth, finger_width, clearance;
 };
 
 /// What is wrong with the seal of the cups at the grasp, which face along `approach` (unit, tool frame): the rims of
@@ -120,9 +120,10 @@ struct CheckedPads {
 MMGRASP_EXPORT std::string broken_seal(const CheckedSuction& suction, const Eigen::Vector3d& approach,
                                        const std::vector<LinkShape>& part, const CheckedGrasp& grasp);
 
-/// How far apart [m] pads are when they close on the part at the grasp, where that is not the grasp's opening, within
-/// 3 mm or a tenth of it.
-MMGRASP_EXPORT std::optional<double> width_unlike_opening(const CheckedPads& pads, const std::vector<LinkShape>& part,
-                                                          const CheckedGrasp& grasp);
+/// How pads that close on the part otherwise meet it than the grasp says, empty where they do not: each must stop half
+/// the opening from the hand's middle, within 1.5 mm or a twentieth of the opening, and find room at the opening before
+/// (with the clearance on either side, as far as the hand opens).
+MMGRASP_EXPORT std::string pads_unlike_grasp(const CheckedPads& pads, const std::vector<LinkShape>& part,
+                                             const CheckedGrasp& grasp);
 
 }  // namespace mmgrasp::verify

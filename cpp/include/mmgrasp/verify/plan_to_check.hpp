@@ -34,6 +34,8 @@ struct MMGRASP_EXPORT CheckedPart {
   bool target = true;
   std::vector<CheckedGrasp> grasps;
   double mass = 0;  ///< [kg]; 0: not known.
+  /// Its body is a cover around what sensors saw: where pads meet the part itself is not to be told from it.
+  bool scanned = false;
 };
 
 /// A suction cup: its rim is a circle about `position` in the tool frame, across the approach [m].

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "mmgrasp/grasp/detail/joined_surface.hpp"
 #include "mmgrasp/grasp/sample_grasps.hpp"
 
 namespace mmgrasp::detail {
@@ -29,6 +30,7 @@ struct ContactPairs {
   std::vector<ContactPair> pairs;  ///< Pairs in the order of sampling, too wide ones included.
   Eigen::Vector3d centre_of_mass = Eigen::Vector3d::Zero();  ///< Uniform density.
   std::vector<Eigen::Vector3d> corners;                      ///< Points whose hull holds the object.
+  std::optional<JoinedSurface> surface;  ///< None where pads meet the contacts alone, however the hand comes.
 };
 
 /// Analytic pairs of one box, sphere, cylinder or capsule; nothing for other shapes.

@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "grasp/sampling/contact_pairs.hpp"
+#include "grasp/sampling/pad_seat.hpp"
 #include "grasp/sampling/spread.hpp"
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/limits.hpp"
@@ -66,27 +68,75 @@ class Judge {
   double radius_ = 0;
 };
 
-void add_grasps(int index, const ContactPair& pair, const Hand& hand, const GraspSamplerOptions& options,
-                const Judge& judge, std::vector<SampledGrasp>& candidates) {
-  const Eigen::Vector3d side = pair.axis.cross(pair.first_approach);
-  for (int i = 0; i < options.approaches; ++i) {
-    const double angle = detail::kTwoPi * i / options.approaches;
-    const Eigen::Vector3d approach = (std::cos(angle) * pair.first_approach + std::sin(angle) * side).normalized();
-    // The pads are alike, the arm is not: the hand turned by half a turn about the approach is a grasp of its own.
-    for (const double flip : {1.0, -1.0}) {
-      const Eigen::Vector3d closing = flip * pair.axis;
+/// Turns contact pairs into grasps: each approached from all around, the hand either way.
+class Candidates {
+ public:
+  Candidates(const ContactPairs& pairs, const Hand& hand, const GraspSamplerOptions& options)
+      : hand_(hand), options_(options), judge_(pairs, hand) {
+    if (pairs.surface) seats_.emplace(*pairs.surface, hand, options);
+    for (std::size_t i = 0; i < pairs.pairs.size(); ++i) add(static_cast<int>(i), pairs.pairs[i]);
+  }
+
+  const std::vector<SampledGrasp>& all() const { return candidates_; }
+  int too_wide() const { return too_wide_; }
+
+ private:
+  void add(int index, const ContactPair& pair) {
+    detail::throw_if_interrupted();
+    bool wide = pair.width > hand_.max_opening, held = false;
+    if (!wide) {
+      const std::vector<int> near = seats_ ? seats_->near(pair) : std::vector<int>();
+      const Eigen::Vector3d side = pair.axis.cross(pair.first_approach);
+      for (int i = 0; i < options_.approaches; ++i) {
+        const double angle = detail::kTwoPi * i / options_.approaches;
+        const Eigen::Vector3d approach = (std::cos(angle) * pair.first_approach + std::sin(angle) * side).normalized();
+        const std::optional<ContactPair> seated = seat(pair, approach, near);
+        if (!seated) continue;
+        const bool fits = seated->width <= hand_.max_opening;
+        (fits ? held : wide) = true;
+        if (fits) add_both_hands({index, i, false}, *seated, approach);
+      }
+    }
+    if (wide && !held) ++too_wide_;
+  }
+
+  /// The pair where the pads meet the part, if they do not on its contacts alone.
+  std::optional<ContactPair> seat(const ContactPair& pair, const Eigen::Vector3d& approach,
+                                  const std::vector<int>& near) const {
+    if (!seats_) return pair;
+    const std::optional<detail::PadSeat> seat = seats_->seat(pair, approach, near);
+    if (!seat) return {};
+    ContactPair seated = pair;
+    seated.middle = seat->middle;
+    seated.width = seat->width;
+    seated.alignment = seat->alignment;
+    return seated;
+  }
+
+  /// The pads are alike, the arm is not: the hand turned by half a turn about the approach is a grasp of its own.
+  void add_both_hands(ContactPairProvenance provenance, const ContactPair& pair, const Eigen::Vector3d& approach) {
+    for (const bool flipped : {false, true}) {
+      const Eigen::Vector3d closing = flipped ? -pair.axis : pair.axis;
       SampledGrasp candidate;
       Grasp& grasp = candidate.grasp;
-      grasp.T_object_hand.linear() = detail::align_axes(hand.approach, hand.closing, approach, closing);
-      grasp.T_object_hand.translation() = pair.middle - options.standoff * approach;
+      grasp.T_object_hand.linear() = detail::align_axes(hand_.approach, hand_.closing, approach, closing);
+      grasp.T_object_hand.translation() = pair.middle - options_.standoff * approach;
       grasp.opening = pair.width;
-      grasp.set_quality(judge(pair, approach, grasp.T_object_hand.translation()));
-      grasp.provenance = ContactPairProvenance{index, i, flip < 0};
+      grasp.set_quality(judge_(pair, approach, grasp.T_object_hand.translation()));
+      provenance.flipped = flipped;
+      grasp.provenance = provenance;
       candidate.bin = 27 * detail::direction_bin(approach) + detail::direction_bin(closing);
-      candidates.push_back(std::move(candidate));
+      candidates_.push_back(std::move(candidate));
     }
   }
-}
+
+  const Hand& hand_;
+  const GraspSamplerOptions& options_;
+  Judge judge_;
+  std::optional<detail::PadSeats> seats_;
+  std::vector<SampledGrasp> candidates_;
+  int too_wide_ = 0;
+};
 
 }  // namespace
 
@@ -112,18 +162,8 @@ SampledGrasps sample_grasps(const std::vector<LinkShape>& object, const Hand& ha
   if (object.size() == 1) pairs = detail::primitive_pairs(object.front(), hand, options);
   if (!pairs) pairs = detail::surface_pairs(object, options);
 
-  SampledGrasps sampled;
-  std::vector<SampledGrasp> candidates;
-  const Judge judge(*pairs, hand);
-  for (std::size_t i = 0; i < pairs->pairs.size(); ++i) {
-    const ContactPair& pair = pairs->pairs[i];
-    if (pair.width > hand.max_opening)
-      ++sampled.too_wide;
-    else
-      add_grasps(static_cast<int>(i), pair, hand, options, judge, candidates);
-  }
-  sampled.grasps = detail::keep_spread(candidates, options.max_grasps);
-  return sampled;
+  const Candidates candidates(*pairs, hand, options);
+  return {detail::keep_spread(candidates.all(), options.max_grasps), candidates.too_wide()};
 }
 
 }  // namespace mmgrasp

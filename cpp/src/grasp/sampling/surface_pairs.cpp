@@ -79,7 +79,7 @@ void add_pairs_from(const SurfacePoint& start, const Eigen::Vector3d& direction,
 }  // namespace
 
 ContactPairs surface_pairs(const std::vector<LinkShape>& object, const GraspSamplerOptions& options) {
-  const JoinedSurface surface = joined_surface(object);
+  JoinedSurface surface = joined_surface(object);
   ContactPairs result;
   if (surface.mesh.triangles.empty()) return result;
   result.centre_of_mass = surface.centre_of_mass;
@@ -99,6 +99,7 @@ ContactPairs surface_pairs(const std::vector<LinkShape>& object, const GraspSamp
     const Eigen::Vector3d direction = i % 2 == 0 ? inward : sample_in_cone(inward, cone, rng);
     add_pairs_from(start, direction, caster, surface.solid, tolerance, cone, result.pairs);
   }
+  result.surface = std::move(surface);
   return result;
 }
 

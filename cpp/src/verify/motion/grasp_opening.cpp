@@ -1,5 +1,5 @@
-// Holds grasps against their parts: every one listed must have something of the part between the pads, and those that
-// are used the width at which pads of the gripper's size meet it.
+// Holds grasps against their parts: every one listed must have something of the part between the pads, and at those
+// that are used pads of the gripper's size must meet it, both where the grasp says.
 #include <algorithm>
 #include <cmath>
 
@@ -9,15 +9,14 @@
 namespace mmgrasp::verify::detail {
 namespace {
 
-constexpr double kThickness = 0.02;  // Thickness of the pads that stand for the fingers [m].
-constexpr double kPoint = 1e-3;      // Size of a pad's middle [m].
+constexpr double kThickness = 1e-3;  // Thickness of a pad [m]: more than a step, so that it passes through nothing.
 constexpr double kStep = 5e-4;       // A pad comes in by such steps [m].
 constexpr int kHalvings = 12;        // How often the last step is halved.
-constexpr double kPlay = 3e-3;       // How far the width may be off the part's [m],
-constexpr double kShare = 0.1;       // or this share of it.
+constexpr double kPlay = 1.5e-3;     // How far a pad may be off the part [m],
+constexpr double kShare = 0.05;      // or this share of the part's width.
 
 CheckedPads pads_of(const PlanToCheck& plan) {
-  return {plan.approach, plan.closing, plan.max_opening, plan.finger_depth, plan.finger_width};
+  return {plan.approach, plan.closing, plan.max_opening, plan.finger_depth, plan.finger_width, plan.clearance};
 }
 
 /// The axes of a hand at its tool frame: approach, closing, across.
@@ -29,24 +28,20 @@ Pose hand_axes(const CheckedPads& hand, const Pose& T_object_hand) {
   return T;
 }
 
-/// How far from the middle plane of the hand a pad stops when it comes in on one side. `depth` and `width`: its size
-/// along the approach and across approach and closing.
+/// A pad that comes in from one side.
 class Pad {
  public:
-  Pad(const CheckedPads& hand, const PlacedBody& part, const Pose& T_object_hand, double depth, double width)
-      : part_(part) {
+  Pad(const CheckedPads& hand, const PlacedBody& part, const Pose& T_object_hand) : part_(part) {
     T_object_pads_ = hand_axes(hand, T_object_hand);
     LinkShape shape;
-    shape.shape = Box{Eigen::Vector3d(depth, kThickness, width)};
+    shape.shape = Box{Eigen::Vector3d(hand.finger_depth, kThickness, hand.finger_width)};
     pad_ = make_solids({shape}).front();
   }
 
-  /// What is between two pads that come in from both sides [m].
-  double between(double from) const { return stops_at(1, from) + stops_at(-1, from); }
-
- private:
-  /// `side`: 1 or -1; `from`: where it starts [m]. A negative answer: it passes through the middle and meets nothing.
+  /// How far from the hand's middle plane it stops on the side 1 or -1 when it comes from there [m]; beyond `from`
+  /// where it has no room at the start, negative where it passes through the middle.
   double stops_at(double side, double from) const {
+    if (touches_at(side, from)) return from + kStep;
     double free = from;
     while (free > -from && !touches_at(side, free - kStep)) free -= kStep;
     double blocked = free - kStep;
@@ -57,6 +52,7 @@ class Pad {
     return free;
   }
 
+ private:
   bool touches_at(double side, double distance) const {
     Pose T = T_object_pads_;
     T.translate(Eigen::Vector3d(0, side * (distance + 0.5 * kThickness), 0));
@@ -110,12 +106,10 @@ void check_grasp_openings(const Context& context, Faults& faults) {
     const int index = context.pick_part[pick], g = plan.picks[pick].grasp;
     if (index < 0 || g < 0 || g >= static_cast<int>(plan.parts[index].grasps.size())) continue;  // said at the pick
     const CheckedPart& part = plan.parts[index];
+    if (part.scanned) continue;
     const CheckedGrasp& grasp = part.grasps[g];
-    const std::optional<double> width = width_unlike_opening(pads_of(plan), part.body.shapes, grasp);
-    if (!width) continue;
-    faults.push_back({"grasp-opening", context.pick_name(pick),
-                      "its grasp says " + text(grasp.opening) + " m, pads of " + text(plan.finger_depth) + " x " +
-                          text(plan.finger_width) + " m meet the part at " + text(*width) + " m"});
+    const std::string unlike = pads_unlike_grasp(pads_of(plan), part.body.shapes, grasp);
+    if (!unlike.empty()) faults.push_back({"grasp-opening", context.pick_name(pick), unlike});
   }
 }
 
@@ -123,19 +117,27 @@ void check_grasp_openings(const Context& context, Faults& faults) {
 
 namespace mmgrasp::verify {
 
-std::optional<double> width_unlike_opening(const CheckedPads& pads, const std::vector<LinkShape>& part,
-                                           const CheckedGrasp& grasp) {
+std::string pads_unlike_grasp(const CheckedPads& pads, const std::vector<LinkShape>& part, const CheckedGrasp& grasp) {
   const detail::PlacedBody body = detail::place_body("part", part, Pose::Identity());
-  const double from = 0.5 * pads.max_opening + 2 * detail::kPlay;
-  const double play = std::max(detail::kPlay, detail::kShare * grasp.opening);
-  // Where the pads' middles meet the part, or where the first of their edges does: pads are said to be larger than
-  // what the part leaves room for beside a bend.
-  const detail::Pad point(pads, body, grasp.T_object_hand, detail::kPoint, detail::kPoint);
-  if (std::abs(point.between(from) - grasp.opening) <= play) return {};
-  const detail::Pad pad(pads, body, grasp.T_object_hand, pads.finger_depth, pads.finger_width);
-  const double between = pad.between(from);
-  if (std::abs(between - grasp.opening) <= play) return {};
-  return between;
+  const double half = 0.5 * grasp.opening, play = std::max(detail::kPlay, detail::kShare * grasp.opening);
+  const double before = std::min(half + pads.clearance, 0.5 * pads.max_opening);
+  const double from = std::max(half + play, before - detail::kThickness);
+  const detail::Pad pad(pads, body, grasp.T_object_hand);
+  double one = pad.stops_at(1, from), other = pad.stops_at(-1, from);
+  if (std::abs(one - half) <= play && std::abs(other - half) <= play) return {};
+  const std::string size =
+      "pads of " + detail::text(pads.finger_depth) + " x " + detail::text(pads.finger_width) + " m";
+  if (std::max(one, other) > from) {  // They come from farther out than the hand would be open before the grasp.
+    const double widest = 0.5 * pads.max_opening + play;
+    one = pad.stops_at(1, widest);
+    other = pad.stops_at(-1, widest);
+    if (std::max(one, other) > widest) return size + " have no room beside the part, however far the hand opens";
+  }
+  if (std::abs(one + other - grasp.opening) <= 2 * play)
+    return size + " meet the part " + detail::text(0.5 * std::abs(one - other)) +
+           " m beside the middle of the hand, whose fingers close alike";
+  return "its opening is " + detail::text(grasp.opening) + " m, " + size + " meet the part at " +
+         detail::text(one + other) + " m";
 }
 
 }  // namespace mmgrasp::verify

@@ -7,13 +7,13 @@
 #include <optional>
 #include <utility>
 
-#include "grasp/assembly/clip_polygon.hpp"
 #include "grasp/assembly/pad_contact.hpp"
 #include "grasp/assembly/shadow_grid.hpp"
 #include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/limits.hpp"
+#include "mmgrasp/geometry/detail/clip_polygon.hpp"
 #include "mmgrasp/geometry/detail/mesh_topology.hpp"
 
 namespace mmgrasp {

@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "grasp/assembly/clip_polygon.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
+#include "mmgrasp/geometry/detail/clip_polygon.hpp"
 
 namespace mmgrasp::detail {
 namespace {

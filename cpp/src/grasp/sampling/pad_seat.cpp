@@ -14,11 +14,10 @@ using Eigen::Vector3d;
 
 constexpr double kGive = 5e-4;  // A pad is touched by what lies this deep under its outermost point [m].
 
-/// What of a triangle lies under a pad: along the approach, across, and outwards from the pair's middle.
+/// A triangle under a pad: its corners along the approach, across, and outwards from the pair's middle.
 struct Piece {
-  std::vector<Vector3d> corners;
-  double least = kInfinity, most = -kInfinity;  // How far outwards it reaches [m].
-  double slant = 0;                             // Cosine of its normal to the way outwards.
+  std::array<Vector3d, 3> corners;
+  double least = kInfinity, most = -kInfinity;  // How far outwards what is under the pad reaches [m].
 };
 
 /// What one pad touches.
@@ -28,13 +27,17 @@ struct Touch {
   Eigen::AlignedBox2d where;  // Along the approach and across [m].
 };
 
-/// The surface under the pads of a hand that approaches a pair of contacts.
+/// What reaches less far outwards is behind the contacts [m].
+double lowest_touched(const ContactPair& pair) {
+  return pair.width / 2 - kGive;
+}
+
+/// The pads of a hand that approaches a pair of contacts, and what lies under them.
 class UnderPads {
  public:
-  UnderPads(const ContactPair& pair, const Vector3d& approach, const Hand& hand, double standoff, bool solid)
-      : solid_(solid),
-        middle_(pair.middle),
-        lowest_(pair.width / 2 - kGive),
+  UnderPads(const ContactPair& pair, const Vector3d& approach, const Hand& hand, double standoff)
+      : middle_(pair.middle),
+        lowest_(lowest_touched(pair)),
         edges_{HalfPlane{{1, 0}, hand.finger_depth / 2 - standoff},
                HalfPlane{{-1, 0}, hand.finger_depth / 2 + standoff}, HalfPlane{{0, 1}, hand.finger_width / 2},
                HalfPlane{{0, -1}, hand.finger_width / 2}} {
@@ -43,43 +46,46 @@ class UnderPads {
 
   /// Adds what the fingers on the two sides may touch, first that where the pair's axis points.
   void add(const std::array<Vector3d, 3>& triangle, std::array<std::vector<Piece>, 2>& pieces) const {
-    std::array<Vector3d, 3> seen;
-    for (int i = 0; i < 3; ++i) seen[i] = axes_ * (triangle[i] - middle_);
-    for (const HalfPlane& edge : edges_)
-      if (all_of(seen, [&](const Vector3d& p) { return edge.n.dot(p.head<2>()) > edge.d; })) return;
-    for (const int side : {0, 1}) {
-      if (side == 1)
-        for (Vector3d& corner : seen) corner.z() = -corner.z();
-      if (all_of(seen, [&](const Vector3d& p) { return p.z() < lowest_; })) continue;
-      const double slant = (seen[1] - seen[0]).cross(seen[2] - seen[0]).normalized().z();
-      Piece piece = clipped(seen);
-      // A mirrored triangle is wound the other way; an open surface has no outside.
-      piece.slant = !solid_ ? std::abs(slant) : side == 0 ? slant : -slant;
-      if (piece.most >= lowest_) pieces[side].push_back(std::move(piece));
+    Piece piece;
+    for (int i = 0; i < 3; ++i) piece.corners[i] = axes_ * (triangle[i] - middle_);
+    bool whole = true;
+    for (const HalfPlane& edge : edges_) {
+      int beyond = 0;
+      for (const Vector3d& corner : piece.corners) beyond += edge.n.dot(corner.head<2>()) > edge.d;
+      if (beyond == 3) return;
+      whole = whole && beyond == 0;
     }
+    const auto measure = [&piece](const auto& corners) {
+      for (const Vector3d& corner : corners) {
+        piece.least = std::min(piece.least, corner.z());
+        piece.most = std::max(piece.most, corner.z());
+      }
+    };
+    if (whole)
+      measure(piece.corners);
+    else
+      measure(clipped(piece));
+    if (piece.most >= lowest_) pieces[0].push_back(piece);
+    if (-piece.least >= lowest_) pieces[1].push_back(seen_from_below(piece));
+  }
+
+  std::vector<Vector3d> clipped(const Piece& piece) const {
+    std::vector<Vector3d> polygon(piece.corners.begin(), piece.corners.end());
+    for (const HalfPlane& edge : edges_) polygon = clip_polygon(polygon, edge);
+    return polygon;
   }
 
  private:
-  template <typename Condition>
-  static bool all_of(const std::array<Vector3d, 3>& corners, Condition&& condition) {
-    return condition(corners[0]) && condition(corners[1]) && condition(corners[2]);
+  /// Two corners change places, so that the outside stays where it was.
+  static Piece seen_from_below(const Piece& piece) {
+    Piece seen{{piece.corners[1], piece.corners[0], piece.corners[2]}, -piece.most, -piece.least};
+    for (Vector3d& corner : seen.corners) corner.z() = -corner.z();
+    return seen;
   }
 
-  Piece clipped(const std::array<Vector3d, 3>& triangle) const {
-    Piece out;
-    out.corners.assign(triangle.begin(), triangle.end());
-    for (const HalfPlane& edge : edges_) out.corners = clip_polygon(out.corners, edge);
-    for (const Vector3d& corner : out.corners) {
-      out.least = std::min(out.least, corner.z());
-      out.most = std::max(out.most, corner.z());
-    }
-    return out;
-  }
-
-  bool solid_;
   Eigen::Matrix3d axes_;
   Vector3d middle_;
-  double lowest_;  // What reaches less far outwards is behind the contacts [m].
+  double lowest_;
   std::array<HalfPlane, 4> edges_;
 };
 
@@ -97,23 +103,31 @@ double outermost(const std::vector<Piece>& pieces, double contact, double gap) {
   return reach;
 }
 
-/// Extends a rectangle by what of the piece reaches out as far as a level.
-void extend_above(double level, const Piece& piece, Eigen::AlignedBox2d& where) {
-  for (std::size_t i = 0; i < piece.corners.size(); ++i) {
-    const Vector3d &a = piece.corners[i], &b = piece.corners[(i + 1) % piece.corners.size()];
+/// Extends a rectangle by what of the polygon reaches out as far as a level.
+void extend_above(double level, const std::vector<Vector3d>& polygon, Eigen::AlignedBox2d& where) {
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vector3d &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
     if (a.z() >= level) where.extend(a.head<2>().eval());
     if ((a.z() < level) != (b.z() < level))
       where.extend((a + (level - a.z()) / (b.z() - a.z()) * (b - a)).head<2>().eval());
   }
 }
 
-Touch touch(const std::vector<Piece>& pieces, double contact, double gap) {
+/// `solid`: the surface has an outside.
+double angle_to_pad(const Piece& piece, bool solid) {
+  const auto& [a, b, c] = piece.corners;
+  const double cosine = (b - a).cross(c - a).normalized().z();
+  return std::acos(std::clamp(solid ? cosine : std::abs(cosine), -1.0, 1.0));
+}
+
+Touch touch(const UnderPads& pads, const std::vector<Piece>& pieces, double contact, double gap, bool solid) {
   Touch out;
   out.reach = outermost(pieces, contact, gap);
+  const double level = out.reach - kGive;
   for (const Piece& piece : pieces) {
-    if (piece.most > out.reach || piece.most < out.reach - kGive) continue;
-    out.angle = std::min(out.angle, std::acos(std::clamp(piece.slant, -1.0, 1.0)));
-    extend_above(out.reach - kGive, piece, out.where);
+    if (piece.most > out.reach || piece.most < level) continue;
+    out.angle = std::min(out.angle, angle_to_pad(piece, solid));
+    extend_above(level, pads.clipped(piece), out.where);
   }
   return out;
 }
@@ -137,10 +151,12 @@ PadSeats::PadSeats(const JoinedSurface& surface, const Hand& hand, const GraspSa
 
 std::vector<int> PadSeats::near(const ContactPair& pair) const {
   const double radius = std::hypot(hand_.finger_depth / 2 + std::abs(options_.standoff), hand_.finger_width / 2);
+  const double lowest = lowest_touched(pair);
   std::vector<int> found;
   for (std::size_t t = 0; t < centres_.size(); ++t) {
     const Vector3d arm = centres_[t] - pair.middle;
     const double along = arm.dot(pair.axis), reach = radius + radii_[t];
+    if (std::abs(along) + radii_[t] < lowest) continue;
     if (arm.squaredNorm() - along * along <= reach * reach) found.push_back(static_cast<int>(t));
   }
   return found;
@@ -149,14 +165,15 @@ std::vector<int> PadSeats::near(const ContactPair& pair) const {
 std::optional<PadSeat> PadSeats::seat(const ContactPair& pair, const Vector3d& approach,
                                       const std::vector<int>& near) const {
   if (std::abs(options_.standoff) > hand_.finger_depth / 2) return {};  // the contacts are not under the pads
-  const UnderPads under(pair, approach, hand_, options_.standoff, surface_.solid);
+  const UnderPads under(pair, approach, hand_, options_.standoff);
   std::array<std::vector<Piece>, 2> pieces;
   for (const int t : near) {
     const auto& [i, j, k] = surface_.mesh.triangles[t];
     under.add({surface_.mesh.vertices[i], surface_.mesh.vertices[j], surface_.mesh.vertices[k]}, pieces);
   }
   const double gap = std::max(hand_.clearance, hand_.body.finger_thickness);
-  const Touch touched[] = {touch(pieces[0], pair.width / 2, gap), touch(pieces[1], pair.width / 2, gap)};
+  const auto on_side = [&](int side) { return touch(under, pieces[side], pair.width / 2, gap, surface_.solid); };
+  const Touch touched[] = {on_side(0), on_side(1)};
   const double angle = std::max(touched[0].angle, touched[1].angle), width = touched[0].reach + touched[1].reach;
   if (angle > cone_ || apart(touched[0].where, touched[1].where) > options_.friction * width) return {};
   return PadSeat{pair.middle + (touched[0].reach - touched[1].reach) / 2 * pair.axis, width, 1 - angle / cone_};

@@ -23,6 +23,7 @@ PART_TYPES: dict[str, dict[str, Any]] = {
     "bushing": {"cylinder": {"radius": 0.018, "length": 0.08}},
     "sleeve": {"cylinder": {"radius": 0.028, "length": 0.07}, "grasp_options": {"approaches": 12, "positions": 2, "standoff": 0.005}},
     "ball": {"sphere": 0.025},
+    "cone": {"mesh": "cone.stl", "grasp_options": {"max_grasps": 60}},
     "angle": {"mesh": "asset:objects/angle.stl", "grasp_options": {"mesh_samples": 200, "max_grasps": 60}},
     "tee": {
         "shapes": [
@@ -42,13 +43,14 @@ ARM = {"storeroom": ("torso_lift_link", "gripper_palm_link"), "omni_cell": ("bas
 def full_scenario(seed: int, folder: Path) -> dict[str, Any]:
     """A shipped robot between its walls with two or three drawn trays, and each other feature in one of a few scenarios.
 
-    Files that it names (maps, clouds, octrees) are written into `folder`.
+    Files that it names (meshes, maps, clouds, octrees) are written into `folder`.
     """
     draw = Random(seed)
     base = draw.choice(list(PLACES))
     scenario: dict[str, Any] = yaml.safe_load((SCENARIOS / f"{base}.yaml").read_text())
     places = draw.sample(PLACES[base], draw.choice([1, 2, 2, 2, 3]))
     scenario.pop("reach")
+    (folder / "cone.stl").write_text(cone(0.024, 0.07))
     scenario.update(
         name=f"full {seed}",
         part_types=PART_TYPES,
@@ -59,6 +61,17 @@ def full_scenario(seed: int, folder: Path) -> dict[str, Any]:
         if draw.random() < share:
             feature(scenario, draw, folder)
     return scenario
+
+
+def cone(radius: float, height: float, sides: int = 24) -> str:
+    """ASCII STL: a part whose sides stand askew to the pads that hold it [m]."""
+    around = [(radius * math.cos(a), radius * math.sin(a), 0.0) for a in (math.tau * i / sides for i in range(sides))]
+    facets = ["solid cone"]
+    for a, b in zip(around, [*around[1:], around[0]], strict=True):
+        for corners in ((a, b, (0.0, 0.0, height)), (b, a, (0.0, 0.0, 0.0))):
+            points = "".join(f"vertex {x:.9g} {y:.9g} {z:.9g}\n" for x, y, z in corners)
+            facets.append(f"facet normal 0 0 0\nouter loop\n{points}endloop\nendfacet")
+    return "\n".join([*facets, "endsolid cone", ""])
 
 
 def _tray(name: str, place: tuple[float, float, float, float], draw: Random) -> dict[str, Any]:
@@ -160,6 +173,22 @@ def _base(scenario: dict[str, Any], draw: Random, _: Path) -> None:
     limits["linear_velocity"] = draw.choice([0.05, 0.6, 2.0])
     if scenario["robot"]["base"] == "diff_drive":
         limits.update(wheel_velocity=draw.choice([0.3, 0.8]), wheel_separation=0.4)
+    elif draw.random() < 0.5:
+        limits.update(wheel_velocity=draw.choice([0.4, 1.0]), wheel_separation=0.38, wheelbase=draw.choice([0.3, 0.5]))
+
+
+def _wheels(scenario: dict[str, Any], draw: Random, _: Path) -> None:
+    """A robot's data sheet in place of speeds of the base."""
+    robot = scenario["robot"]
+    wheels = {"radius": 0.06, "speed": draw.choice([6.0, 17.4]), "track": 0.38}
+    if robot["base"] == "omni":
+        wheels["wheelbase"] = draw.choice([0.3, 0.48])
+    kept = ["workspace", "linear_acceleration", "angular_acceleration"]
+    if draw.random() < 0.5:
+        wheels["acceleration"] = draw.choice([20.0, 60.0])
+        kept = kept[:1]
+    robot["wheels"] = wheels
+    robot["base_limits"] = {key: value for key, value in robot["base_limits"].items() if key in kept}
 
 
 def _frames(scenario: dict[str, Any], draw: Random, _: Path) -> None:
@@ -291,5 +320,6 @@ FEATURES: list[tuple[float, Feature]] = [
     (0.25, _octree),
     (0.12, _measured_hand),
     (0.25, _small_database),
+    (0.25, _wheels),
 ]
 """Features, in this order, each in so large a share of the scenarios."""

@@ -136,6 +136,8 @@ void bind_gripper(py::module_& m) {
       .def_property_readonly(
           "pad_width", &G::pad_width,
           "Width of the pad across the approach: the finger's, or what three fingers that close leave of it [m].")
+      .def_property_readonly("palm_radius", &G::palm_radius,
+                             "Radius of the palm, a cylinder that covers the fingers while they are open [m].")
       .def(
           "holds", [](const G& g, const Given<SegmentRequirement>& r) { return g.holds(taken(r, "requirement")); },
           "requirement"_a, "Whether it holds a segment: (5.2) of P1 with <= in place of <, to 1e-9 m.")

@@ -36,6 +36,8 @@ def result_to_dict(plan: GripperPlan) -> dict[str, Any]:
         "missing": plan.missing,
         "help": plan.help,
         "notes": plan.notes,
+        "left_out": [{"requirement": r.requirement, "met": r.met} for r in plan.left_out],
+        "rehearsals": plan.rehearsals,
         "grippers": [],
         "operations": [],
         "segments": [

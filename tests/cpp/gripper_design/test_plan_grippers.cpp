@@ -104,12 +104,16 @@ TEST(PlanGrippers, WhatWouldHelpHelps) {
   found = plan_grippers(ring_on_peg(), {{"jaws", 2, 0.02}});
   ASSERT_EQ(found.outcome, Outcome::infeasible);
   EXPECT_NE(found.missing[0].find("no actuator has 3 fingers"), std::string::npos) << found.missing[0];
-  ASSERT_EQ(found.help.size(), 1u);
-  EXPECT_EQ(found.help[0].substr(0, 42), "ring: a drive with 3 fingers, a stroke of ");
+  ASSERT_EQ(found.help.size(), 2u);
+  EXPECT_EQ(found.help[0], "ring: a drive with 3 fingers, a stroke of 5 mm and an opening of up to 24 mm would do");
+  EXPECT_EQ(found.help[1],
+            "ring: a drive with 3 fingers, a stroke of 2 mm and an opening of up to 21 mm would do, the least: its "
+            "fingers open by 0.5 mm, not by 2 mm");
   const double opening = std::stod(found.help[0].substr(found.help[0].find("up to ") + 6)) / 1000;
   EXPECT_NEAR(opening, 0.024, 1e-4);  // 20 mm, and 2 mm for each finger to let go
   EXPECT_EQ(plan_grippers(ring_on_peg(), {{"jaws", 2, 0.02}, {"c", 3, 0.006, opening}}).outcome, Outcome::solved);
   EXPECT_EQ(plan_grippers(ring_on_peg(), {{"c", 3, 0.006, opening - 0.0002}}).outcome, Outcome::infeasible);
+  EXPECT_EQ(plan_grippers(ring_on_peg(), {{"c", 3, 0.002, 0.021}}).outcome, Outcome::solved);
 }
 
 TEST(PlanGrippers, FingersKeepOffSegmentsAndBoxes) {

@@ -153,10 +153,10 @@ def test_advice_helps_as_it_is_printed(
 ) -> None:
     rng = np.random.default_rng(1)
     given: list[str] = []
-    for _ in range(3):
+    for _ in range(2):
         content = {
             "parts": [{"name": "part", **part(rng)}],
-            "order": [{"part": "part", "from": {"xyz": [0, 0, 200]}}],
+            "order": [{"part": "part", "from": {"xyz": [0, 0, 20]}}],
             **rest(rng),
         }
         plan = planned(content)

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <set>
 #include <string>
 #include <unordered_map>
@@ -90,7 +91,9 @@ class Places {
                                             [&](const Asked& a) { return !at_most(low, a.range.lowest); });
     const auto end = std::partition_point(
         begin, asked_.end(), [&](const Asked& a) { return at_most(a.range.highest, low + actuator_.stroke); });
-    std::vector<Asked> out(begin, end);
+    std::vector<Asked> out;
+    std::copy_if(begin, end, std::back_inserter(out),
+                 [&](const Asked& a) { return at_most(a.range.least_closed, low); });
     std::sort(out.begin(), out.end(), [](const Asked& a, const Asked& b) {
       return std::make_pair(a.range.shortest, a.range.longest) < std::make_pair(b.range.shortest, b.range.longest);
     });
@@ -215,13 +218,14 @@ void check_actuators(const std::vector<GripperActuator>& actuators) {
 
 bool RequiredRange::can_be_met(const GripperActuator& actuator) const {
   return at_most(highest, actuator.max_opening) && at_most(highest - lowest, actuator.stroke) &&
-         at_most(shortest, longest);
+         at_most(shortest, longest) && at_most(least_closed, std::min(lowest, actuator.max_opening - actuator.stroke));
 }
 
 RequiredRange required_range(const SegmentRequirement& requirement, const MinimalGrippersOptions& options) {
   RequiredRange range;
   range.lowest = std::max(0.0, requirement.opening - options.opening_margin);
   range.highest = requirement.opening + std::max(options.opening_margin, 2 * requirement.clearance);
+  range.least_closed = requirement.least_min_opening;
   range.shortest = std::max(options.shortest_finger, requirement.min_finger_length + options.length_margin);
   range.longest = std::min(options.longest_finger, requirement.max_finger_length - options.length_margin);
   return range;
@@ -230,7 +234,8 @@ RequiredRange required_range(const SegmentRequirement& requirement, const Minima
 bool meets(const GripperActuator& actuator, double min_opening, double finger_length,
            const SegmentRequirement& requirement, const RequiredRange& range) {
   return requirement.fingers == actuator.fingers && range.can_be_met(actuator) &&
-         at_most(min_opening, range.lowest) && at_most(range.highest, min_opening + actuator.stroke) &&
+         at_most(range.least_closed, min_opening) && at_most(min_opening, range.lowest) &&
+         at_most(range.highest, min_opening + actuator.stroke) &&
          at_most(range.shortest, finger_length) && at_most(finger_length, range.longest);
 }
 

@@ -54,6 +54,11 @@ std::string refusal(const SegmentRequirement& requirement, const std::vector<Gri
     return "it is " + exactly(requirement.opening) + " wide" +
            (range.highest > requirement.opening ? " and asks for an opening of " + exactly(range.highest) : "") +
            ", actuators with " + fingers + " open to " + exactly(widest);
+  RequiredRange closing = range;
+  closing.least_closed = 0;
+  const auto by_closing = [&](const auto& a) { return a.fingers == requirement.fingers && closing.can_be_met(a); };
+  if (options.grid_openings == 0 && std::any_of(actuators.begin(), actuators.end(), by_closing))
+    return "its gripper must not close below " + exactly(range.least_closed) + ", those that take it do";
   return options.grid_openings > 0 && at_most(range.highest - range.lowest, longest_stroke)
              ? "no gripper on the grid takes it: use a finer grid, or none"
              : "opening_margin = " + exactly(options.opening_margin) +

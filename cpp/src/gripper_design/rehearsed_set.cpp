@@ -6,18 +6,14 @@
 #include <utility>
 
 #include "gripper_design/counted_texts.hpp"
-#include "gripper_design/gripper_candidates.hpp"
 #include "gripper_design/millimetres.hpp"
 #include "gripper_design/set_options.hpp"
-#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/detail/stopwatch.hpp"
 #include "mmgrasp/core/parallel.hpp"
 #include "mmgrasp/gripper_design/rehearse_operation.hpp"
 
 namespace mmgrasp::detail {
 namespace {
-
-constexpr double kLeastPad = 1e-6;  // Narrower ones are edges [m].
 
 std::string grasps(std::size_t count) {
   return std::to_string(count) + (count == 1 ? " grasp" : " grasps");
@@ -32,7 +28,6 @@ void RehearsedSet::find() {
 
 void RehearsedSet::choose_until_nothing_is_met() {
   while (choose()) {
-    if (task_.options.holding) mount_for_real_pads();
     if (!rehearse()) return;
     const auto nothing = [](const std::string& met) { return met.empty(); };
     if (std::all_of(result_.met.begin(), result_.met.end(), nothing)) return;
@@ -120,74 +115,41 @@ std::vector<std::string> RehearsedSet::operations_without_grasp() const {
   return out;
 }
 
-/// Grasps were judged with pads as wide as fingers may be: those of centric fingers are the wider the less these close,
-/// which is made use of where a part would slip.
-void RehearsedSet::mount_for_real_pads() {
-  for (std::size_t g = 0; g < result_.set->grippers.size(); ++g)
-    if (slipping(g)) close_less(g);
-}
-
 /// What is said of the grasps chosen is of the pads that their grippers have.
 void RehearsedSet::write_real_pads() {
   for (std::size_t i = 0; i < task_.operations.size(); ++i) {
     const int taken = result_.set->requirement_of_part[i];
-    result_.grasps[taken] = with_real_pad(i);
-    result_.holdings[taken] = held_load(result_.grasps[taken], task_.loads.at(task_.operations[i].name));
+    result_.holdings[taken] = held(i);
+    result_.grasps[taken] = grasp_of(i);
   }
 }
 
-AssemblyGrasp RehearsedSet::with_real_pad(std::size_t operation) const {
-  const MinimalGrippersResult& set = *result_.set;
-  AssemblyGrasp grasp = result_.grasps[set.requirement_of_part[operation]];
-  const double width = set.grippers[set.gripper_of_part[operation]].pad_width();
-  grasp.contact_width = std::min(grasp.contact_width, std::max(width, kLeastPad));
-  return grasp;
+const Gripper& RehearsedSet::gripper_of(std::size_t operation) const {
+  return result_.set->grippers[result_.set->gripper_of_part[operation]];
 }
 
-bool RehearsedSet::slips(std::size_t operation) const {
-  const HeldLoad held = held_load(with_real_pad(operation), task_.loads.at(task_.operations[operation].name));
-  return held.safety < task_.options.holding->least_safety;
+AssemblyGrasp RehearsedSet::grasp_of(std::size_t operation) const {
+  return with_real_pad(result_.grasps[result_.set->requirement_of_part[operation]], gripper_of(operation));
 }
 
-bool RehearsedSet::slipping(std::size_t gripper) const {
-  for (std::size_t i = 0; i < task_.operations.size(); ++i)
-    if (result_.set->gripper_of_part[i] == static_cast<int>(gripper) && slips(i)) return true;
-  return false;
-}
-
-/// Mounts a gripper's fingers as wide apart as the margins of what it takes let it.
-void RehearsedSet::close_less(std::size_t gripper) {
-  MinimalGrippersResult& set = *result_.set;
-  Gripper& g = set.grippers[gripper];
-  const double stroke = g.max_opening - g.min_opening;
-  double lowest = kInfinity;
-  for (std::size_t i = 0; i < task_.operations.size(); ++i) {
-    if (set.gripper_of_part[i] != static_cast<int>(gripper)) continue;
-    const SegmentRequirement& r = result_.requirements[set.requirement_of_part[i]];
-    lowest = std::min(lowest, required_range(r, set_options(task_.options)).lowest);
-  }
-  for (const GripperActuator& a : task_.actuators)
-    if (a.name == g.actuator) lowest = std::min(lowest, a.max_opening - a.stroke);
-  g.min_opening = std::max(g.min_opening, lowest);
-  g.max_opening = g.min_opening + stroke;
+HeldLoad RehearsedSet::held(std::size_t operation) const {
+  return held_load(grasp_of(operation), task_.loads.at(task_.operations[operation].name));
 }
 
 RehearsedSet::Rehearsal RehearsedSet::rehearsal_of(std::size_t operation) const {
-  const MinimalGrippersResult& set = *result_.set;
-  const Gripper& g = set.grippers[set.gripper_of_part[operation]];
-  return {operation, set.requirement_of_part[operation], g.min_opening, g.max_opening, g.finger_length};
+  const Gripper& g = gripper_of(operation);
+  return {operation, result_.set->requirement_of_part[operation], g.min_opening, g.max_opening, g.finger_length};
 }
 
 /// What became of an operation with the gripper chosen for it.
 std::string RehearsedSet::gone_through(std::size_t operation) const {
-  const MinimalGrippersResult& set = *result_.set;
-  const Gripper& gripper = set.grippers[set.gripper_of_part[operation]];
-  if (task_.options.holding && slips(operation))
+  const Gripper& gripper = gripper_of(operation);
+  if (task_.options.holding && held(operation).safety < task_.options.holding->least_safety)
     return "pads slip: those of " + gripper.name + ", " + millimetres(gripper.pad_width()) +
            " wide, do not hold weight and insertion";
   const auto known = known_.find(rehearsal_of(operation));
   if (known != known_.end()) return known->second;
-  return rehearse_operation(gripper, result_.grasps[set.requirement_of_part[operation]], task_.operations[operation]);
+  return rehearse_operation(gripper, grasp_of(operation), task_.operations[operation]);
 }
 
 }  // namespace mmgrasp::detail

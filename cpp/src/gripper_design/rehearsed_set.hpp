@@ -35,12 +35,10 @@ class RehearsedSet {
   bool leave_refused_out();
   std::vector<std::string> operations_without_grasp() const;
   std::string refused_of(const std::string& operation) const;
-  void mount_for_real_pads();
   void write_real_pads();
-  AssemblyGrasp with_real_pad(std::size_t operation) const;
-  bool slips(std::size_t operation) const;
-  bool slipping(std::size_t gripper) const;
-  void close_less(std::size_t gripper);
+  const Gripper& gripper_of(std::size_t operation) const;
+  AssemblyGrasp grasp_of(std::size_t operation) const;
+  HeldLoad held(std::size_t operation) const;
   std::string gone_through(std::size_t operation) const;
 
   /// An operation, the requirement that it is done by, and lengths of the gripper.

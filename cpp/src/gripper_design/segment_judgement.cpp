@@ -22,6 +22,7 @@ constexpr double kAnyOpening = 2.0;     // [m]
 constexpr double kLeastStroke = 0.001;  // [m]
 constexpr double kSameOpening = 2e-5;   // Rough faces give each grasp an opening of its own: alike within this [m].
 constexpr double kOpeningStep = 1e-6;   // [m]
+constexpr double kLeastPad = 1e-6;      // Narrower ones are edges [m].
 constexpr double kLeastContact = 5e-4;  // Thinner segments are not told to be held by less contact [m].
 
 std::vector<GripperActuator> with_fingers(const std::vector<GripperActuator>& actuators, int fingers) {
@@ -54,6 +55,27 @@ GraspRank rank_of(const AssemblyGrasp& grasp, const OperationLoad* load, const H
           -rounded(held.contact_area, 1e-8)};
 }
 
+/// How far a gripper may close for its pads to be wide enough to hold the load; none: they never are. Pads are the wider
+/// the less it closes, and hold the more.
+std::optional<double> least_min_opening(const Judgement& by, const AssemblyGrasp& grasp) {
+  const auto holds = [&](double min_opening) {
+    Gripper gripper;
+    gripper.fingers = grasp.fingers;
+    gripper.min_opening = min_opening;
+    gripper.finger_width = by.options.finger_width;
+    return held_load(with_real_pad(grasp, gripper), *by.load).safety >= by.options.holding->least_safety;
+  };
+  const double most = std::max(0.0, asked_opening(grasp) - by.options.opening_margin);
+  if (holds(0)) return 0;
+  if (!holds(most)) return std::nullopt;
+  double slips = 0, held = most;
+  while (held - slips > kSameLength) {
+    const double between = (slips + held) / 2;
+    (holds(between) ? held : slips) = between;
+  }
+  return std::min(held + kSameLength, most);  // Openings that are less by roundings hold, too.
+}
+
 Tried try_grasp(const Judgement& by, const AssemblyGrasp& grasp, const SurfacePieces& keep_off) {
   Tried out;
   out.found.grasp = grasp;
@@ -62,7 +84,9 @@ Tried try_grasp(const Judgement& by, const AssemblyGrasp& grasp, const SurfacePi
     return out;
   }
   if (by.load) out.found.held = held_load(grasp, *by.load);
-  if (by.load && out.found.held.safety < by.options.holding->least_safety) {
+  const std::optional<double> closes_to = by.load ? least_min_opening(by, grasp) : 0;
+  if (closes_to) out.found.least_min_opening = *closes_to;
+  if (!closes_to) {
     out.fell_by = "pads slip: the grasp does not hold weight and insertion";
     return out;
   }
@@ -89,7 +113,7 @@ Tried try_grasp(const Judgement& by, const AssemblyGrasp& grasp, const SurfacePi
 bool held_by_another(const FreeGrasp& f, const FreeGrasp& other) {
   return std::abs(other.grasp.opening - f.grasp.opening) < kSameOpening &&
          other.lengths.shortest <= f.lengths.shortest && other.lengths.longest >= f.lengths.longest &&
-         other.rank <= f.rank;
+         other.least_min_opening <= f.least_min_opening && other.rank <= f.rank;
 }
 
 /// One segment of a part that an operation moves.
@@ -224,6 +248,11 @@ std::string nothing_to_try(const Judgement& by, const SegmentToHold& segment,
 
 }  // namespace
 
+AssemblyGrasp with_real_pad(AssemblyGrasp grasp, const Gripper& gripper) {
+  grasp.contact_width = std::min(grasp.contact_width, std::max(gripper.pad_width(), kLeastPad));
+  return grasp;
+}
+
 double kept_clearance(const std::vector<GripperActuator>& drives, const PlanGrippersOptions& options) {
   return std::clamp((longest_stroke(drives) - options.opening_margin) / 2, 0.0, options.clearance);
 }
@@ -248,12 +277,14 @@ SegmentRequirement required_by(const FreeGrasp& found, const SegmentFate& fate) 
           asked_opening(found.grasp),
           found.lengths.shortest,
           found.lengths.longest,
-          found.grasp.clearance};
+          found.grasp.clearance,
+          found.least_min_opening};
 }
 
 std::vector<FreeGrasp> undominated(std::vector<FreeGrasp> found) {
   const auto key = [](const FreeGrasp& f) {
-    return std::make_tuple(asked_opening(f.grasp), f.lengths.shortest, -f.lengths.longest, f.rank);
+    return std::make_tuple(asked_opening(f.grasp), f.lengths.shortest, -f.lengths.longest, f.rank,
+                           f.least_min_opening);
   };
   std::stable_sort(found.begin(), found.end(), [&](const auto& a, const auto& b) { return key(a) < key(b); });
   std::vector<FreeGrasp> kept;

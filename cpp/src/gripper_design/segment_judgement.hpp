@@ -22,6 +22,7 @@ struct FreeGrasp {
   FingerLengthRange lengths;
   HeldLoad held;
   GraspRank rank{};
+  double least_min_opening = 0;  ///< As SegmentRequirement's.
   std::vector<FreeGrasp> in_reserve = {};  ///< No better than it in any way: tried where its rehearsal meets something.
 };
 
@@ -52,6 +53,9 @@ double kept_clearance(const std::vector<GripperActuator>& drives, const PlanGrip
 
 /// 2 for a box, 3 for a cylinder, 0 for what no gripper suits (P1 5.2.1).
 int fingers_for(PrimitiveKind kind);
+
+/// A grasp by pads no wider than a gripper's, which three closed fingers may leave narrower than they are themselves.
+AssemblyGrasp with_real_pad(AssemblyGrasp grasp, const Gripper& gripper);
 
 /// The opening that a grasp asks of a gripper, in whole micrometres [m]: meshes of single precision are no better.
 double asked_opening(const AssemblyGrasp& grasp);

@@ -91,6 +91,7 @@ def _requirement(requirement: SegmentRequirement, grasp: AssemblyGrasp) -> dict[
         "min_finger_length": requirement.min_finger_length,
         "max_finger_length": requirement.max_finger_length,
         "clearance": requirement.clearance,
+        "least_min_opening": requirement.least_min_opening,
         "T_assembly_tips": np.asarray(grasp.T_active_tool).tolist(),
     }
 

@@ -330,6 +330,24 @@ TEST(PlanGrippers, HoldingIsThatOfThePadsThatExist) {
   expect_true(firm);
 }
 
+TEST(PlanGrippers, PadsTooNarrowInASharedGripperAskForAnotherOne) {
+  std::vector<AssemblyOperation> order{ring_on_plate("pin", 0.003, 0.012), ring_on_plate("bead", 0.009, 0.012)};
+  order[1].insertion_force = 20;
+  order[1].hole = Eigen::Vector3d(0.004, 0, 0);
+  PlanGrippersOptions options;
+  options.holding.emplace();
+  options.holding->least_safety = 0;
+  const PlanGrippersResult shared = plan_grippers(order, kChuck, {}, options);
+  ASSERT_EQ(shared.outcome, Outcome::solved);
+  ASSERT_EQ(shared.set->grippers.size(), 1u);
+  options.holding->least_safety = 1.01 * shared.holdings[shared.set->requirement_of_part[1]].safety;
+  const PlanGrippersResult apart = plan_grippers(order, kChuck, {}, options);
+  ASSERT_EQ(apart.outcome, Outcome::solved);
+  EXPECT_EQ(apart.set->grippers.size(), 2u);
+  EXPECT_TRUE(apart.left_out.empty());
+  EXPECT_GE(apart.holdings[apart.set->requirement_of_part[1]].safety, options.holding->least_safety);
+}
+
 TEST(PlanGrippers, ARehearsalThatWasStoppedHasMetNothingYet) {
   std::vector<AssemblyOperation> order;
   for (int i = 0; i < 4; ++i) order.push_back(ring_on_plate("ring_" + std::to_string(i), 0.02, 0.012));

@@ -145,7 +145,9 @@ void bind_gripper(py::module_& m) {
                              "Radius of the palm, a cylinder that covers the fingers while they are open [m].")
       .def(
           "holds", [](const G& g, const Given<SegmentRequirement>& r) { return g.holds(taken(r, "requirement")); },
-          "requirement"_a, "Whether it holds a segment: (5.2) of P1 with <= in place of <, to 1e-9 m, and closes no farther than it allows.")
+          "requirement"_a,
+          "Whether it holds a segment: (5.2) of P1 with <= in place of <, to 1e-9 m, and closes no farther than it "
+          "allows.")
       .def(
           "hand", &G::hand,
           "The Hand that it is, for planners and samplers: tool frame \"tool\", names as to_urdf() writes them. Of two "

@@ -110,9 +110,8 @@ void bind_plan_result(py::module_& m) {
   py::class_<G>(m, "RefusedGrasp", "A grasp that the rehearsal of its operation refused.")
       .def_readonly("requirement", &G::requirement, "Its number in the plan.")
       .def_readonly("met", &G::met, "What it met with the gripper chosen for it then.")
-      .def("__repr__", [](const G& g) {
-        return "RefusedGrasp(requirement " + std::to_string(g.requirement) + ": " + g.met + ")";
-      });
+      .def("__repr__",
+           [](const G& g) { return "RefusedGrasp(requirement " + std::to_string(g.requirement) + ": " + g.met + ")"; });
   using R = PlanGrippersResult;
   py::class_<R>(m, "PlanGrippersResult", "The grippers of an assembly, and how they were come by.")
       .def_readonly(
@@ -174,7 +173,8 @@ void bind_plan_grippers(py::module_& m) {
       ("The least set of grippers that puts an assembly together (P1 chapter 5), from meshes and an order: segments, "
        "primitives (boxes for two jaws, cylinders for three centric fingers), grasps that meet nothing over the whole "
        "operation with some finger length, the least set, and every operation gone through again with the gripper "
-       "itself by the collision checker; where that meets something, the set is chosen again without the grasp. Of several segments and depths that no more grippers could take, the one is "
+       "itself by the collision checker; where that meets something, the set is chosen again without the grasp. Of "
+       "several segments and depths that no more grippers could take, the one is "
        "taken on which the insertion bears most evenly, then the one held most safely (both with `holding`), then the "
        "one touched on most surface." +
        option_help(plan_grippers_fields()))

@@ -95,65 +95,69 @@ def with_drive(content: dict[str, Any], drive: dict[str, Any], *, alone: bool) -
     return {**content, "actuators": [*others, drive]}
 
 
+OPTIONS = (
+    ("fingers of", "longest", -SLIGHTLY),
+    ("fingers as short as", "shortest", SLIGHTLY),
+    ("a min_contact of", "min_contact", 0.0),  # more may do where tips give up tip_clearance
+    ("opening_margin =", "opening_margin", SLIGHTLY),
+    ("clearance =", "clearance", SLIGHTLY),
+)
+DRIVE = (
+    rf"\w+: a drive with (\d) fingers, a stroke of {NUMBER} and an opening of up to {NUMBER} would do"
+    rf"(, in place of those with \d fingers)?(, the least)?(: its fingers open by {NUMBER}, not by {NUMBER})?"
+)
+
+
+def with_stroke(content: dict[str, Any], name: str, stroke: float) -> dict[str, Any]:
+    drives = [{**a, "stroke": stroke} if a["name"] == name else a for a in content["actuators"]]
+    return {**content, "actuators": drives}
+
+
 def applied(content: dict[str, Any], advice: str) -> tuple[dict[str, Any], list[dict[str, Any]]]:
     """The file with a piece of advice in it, and files in which it is followed to slightly less than the least."""
-    for text, key, less in (
-        ("fingers of", "longest", -1),
-        ("fingers as short as", "shortest", 1),
-        ("a min_contact of", "min_contact", 0),  # more may do where tips give up tip_clearance
-        ("opening_margin =", "opening_margin", 1),
-        ("clearance =", "clearance", 1),
-    ):
+    for text, key, less in OPTIONS:
         if found := re.fullmatch(rf"\w+: {text} {NUMBER} would do", advice):
             value = float(found[1])
-            return with_fingers(content, key, value), [with_fingers(content, key, value + less * SLIGHTLY)] * abs(less)
+            return with_fingers(content, key, value), [with_fingers(content, key, value + less)] if less else []
     if found := re.fullmatch(rf"\w+: a stroke of {NUMBER} for '([\w ]+)' would do", advice):
-
-        def longer(stroke: float) -> dict[str, Any]:
-            drives = [{**a, "stroke": stroke} if a["name"] == found[2] else a for a in content["actuators"]]
-            return {**content, "actuators": drives}
-
-        return longer(float(found[1])), [longer(float(found[1]) - SLIGHTLY)]
-    found = re.fullmatch(
-        rf"\w+: a drive with (\d) fingers, a stroke of {NUMBER} and an opening of up to {NUMBER} would do"
-        rf"(, in place of those with \d fingers)?(, the least)?(: its fingers open by {NUMBER}, not by {NUMBER})?",
-        advice,
-    )
-    assert found, advice
-    fingers, stroke, widest = int(found[1]), float(found[2]), float(found[3])
-    alone = found[6] is not None
+        stroke = float(found[1])
+        return with_stroke(content, found[2], stroke), [with_stroke(content, found[2], stroke - SLIGHTLY)]
+    drive = re.fullmatch(DRIVE, advice)
+    assert drive, advice
+    fingers, stroke, widest = int(drive[1]), float(drive[2]), float(drive[3])
 
     def offered(stroke: float, widest: float) -> dict[str, Any]:
-        return with_drive(content, jaws(stroke, widest, "new", fingers), alone=alone)
+        return with_drive(content, jaws(stroke, widest, "new", fingers), alone=drive[6] is not None)
 
-    less = [offered(stroke, widest - SLIGHTLY)] if widest - SLIGHTLY >= stroke else []
-    if found[5] is not None:
-        less.append(offered(stroke - SLIGHTLY, widest))
-    return offered(stroke, widest), less
+    shorts = [offered(stroke, widest - SLIGHTLY)] if widest - SLIGHTLY >= stroke else []
+    if drive[5] is not None:
+        shorts.append(offered(stroke - SLIGHTLY, widest))
+    return offered(stroke, widest), shorts
 
 
 @pytest.mark.parametrize(
-    ("part", "rest", "keys"),
+    ("part", "rest", "draws", "keys"),
     [
-        (block, narrow, ("drive",)),
-        (disc, narrow, ("drive", "the least")),
-        (block, short_stroke, ("stroke", "opening_margin")),
-        (disc, short_stroke, ("stroke", "opening_margin")),
-        (block, mixed_strokes, ("clearance",)),
-        (block, short_fingers, ("fingers of",)),
-        (disc, short_fingers, ("fingers of",)),
-        (washer, any_drive, ("min_contact",)),
+        (block, narrow, 2, ("drive",)),
+        (disc, narrow, 2, ("drive", "the least")),
+        (block, short_stroke, 1, ("stroke", "opening_margin")),
+        (disc, short_stroke, 1, ("stroke", "opening_margin")),
+        (block, mixed_strokes, 2, ("clearance",)),
+        (block, short_fingers, 1, ("fingers of",)),
+        (disc, short_fingers, 1, ("fingers of",)),
+        (washer, any_drive, 1, ("min_contact",)),
     ],
 )
 def test_advice_helps_as_it_is_printed(
     planned: Callable[[dict[str, Any]], GripperPlan],
     part: Callable[[np.random.Generator], dict[str, Any]],
     rest: Callable[[np.random.Generator], dict[str, Any]],
+    draws: int,
     keys: tuple[str, ...],
 ) -> None:
     rng = np.random.default_rng(1)
     given: list[str] = []
-    for _ in range(2):
+    for _ in range(draws):
         content = {
             "parts": [{"name": "part", **part(rng)}],
             "order": [{"part": "part", "from": {"xyz": [0, 0, 20]}}],
@@ -162,9 +166,9 @@ def test_advice_helps_as_it_is_printed(
         plan = planned(content)
         given += plan.help
         for advice in plan.help:
-            followed, less = applied(content, advice)
+            followed, shorts = applied(content, advice)
             assert planned(followed).solved, (content, advice)
-            for short in less:
+            for short in shorts:
                 assert not planned(short).solved, (content, advice)
     for key in keys:
         assert any(key in advice for advice in given), (key, given)

@@ -71,8 +71,8 @@ GripperActuator as_printed(GripperActuator drive) {
 }
 
 std::string text_of(const GripperActuator& drive) {
-  return "a drive " + of_fingers(drive.fingers) + ", a stroke of " + printed(drive.stroke) + " and an opening of up to " +
-         printed(drive.max_opening) + " would do";
+  return "a drive " + of_fingers(drive.fingers) + ", a stroke of " + printed(drive.stroke) +
+         " and an opening of up to " + printed(drive.max_opening) + " would do";
 }
 
 std::vector<GripperActuator> with(std::vector<GripperActuator> drives, const GripperActuator& one) {

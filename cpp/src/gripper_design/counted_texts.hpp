@@ -20,7 +20,7 @@ class CountedTexts {
 
  private:
   std::vector<std::pair<std::string, int>> counts_;
-  std::unordered_map<std::string, std::size_t> places_;  // In the counts, by text.
+  std::unordered_map<std::string, std::size_t> places_;  // Places in the counts by text.
 };
 
 }  // namespace mmgrasp::detail

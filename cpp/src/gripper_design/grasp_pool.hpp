@@ -28,9 +28,9 @@ class GraspPool {
  private:
   PlanGrippersResult& result_;
   bool with_holdings_;
-  std::vector<GraspRank> ranks_;                     // One per requirement,
-  std::vector<std::vector<FreeGrasp>> in_reserve_;   // as these,
-  std::vector<std::size_t> fate_of_;                 // and these.
+  std::vector<GraspRank> ranks_;                    // One per requirement,
+  std::vector<std::vector<FreeGrasp>> in_reserve_;  // as these,
+  std::vector<std::size_t> fate_of_;                // and these.
   std::set<int> left_out_;
 };
 

@@ -235,8 +235,8 @@ bool meets(const GripperActuator& actuator, double min_opening, double finger_le
            const SegmentRequirement& requirement, const RequiredRange& range) {
   return requirement.fingers == actuator.fingers && range.can_be_met(actuator) &&
          at_most(range.least_closed, min_opening) && at_most(min_opening, range.lowest) &&
-         at_most(range.highest, min_opening + actuator.stroke) &&
-         at_most(range.shortest, finger_length) && at_most(finger_length, range.longest);
+         at_most(range.highest, min_opening + actuator.stroke) && at_most(range.shortest, finger_length) &&
+         at_most(finger_length, range.longest);
 }
 
 std::optional<std::vector<GripperCandidate>> gripper_candidates(const std::vector<SegmentRequirement>& requirements,

@@ -7,7 +7,7 @@ namespace mmgrasp::detail {
 namespace {
 
 constexpr double kPerMetre = 1e5;   // Hundredths of a millimetre.
-constexpr double kRounding = 1e-6;  // Of one of them: what sums are off by.
+constexpr double kRounding = 1e-6;  // What sums are off by, in hundredths.
 
 }  // namespace
 

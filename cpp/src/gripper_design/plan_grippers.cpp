@@ -51,7 +51,8 @@ void check_operations(const std::vector<AssemblyOperation>& operations) {
 void check_tip_clearance(const std::vector<AssemblyOperation>& operations, const PlanGrippersOptions& options) {
   double largest = 0;
   for (const AssemblyOperation& o : operations)
-    for (const PlacedMesh& part : o.active) largest = std::max(largest, shape_bounds(MeshShape{part.mesh}).diagonal().norm());
+    for (const PlacedMesh& part : o.active)
+      largest = std::max(largest, shape_bounds(MeshShape{part.mesh}).diagonal().norm());
   require(at_most(options.tip_clearance, largest), "tip_clearance", options.tip_clearance,
           "must be no longer than the largest part that is moved, " + millimetres(largest) + " from corner to corner");
 }

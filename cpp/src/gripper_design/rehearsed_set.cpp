@@ -1,5 +1,5 @@
-// The least set of grippers with which every operation was gone through: chosen, rehearsed, and chosen again without the
-// grasps that a rehearsal refused.
+// The least set of grippers with which every operation was gone through: chosen, rehearsed, and chosen again without
+// the grasps that a rehearsal refused.
 #include "gripper_design/rehearsed_set.hpp"
 
 #include <algorithm>

@@ -15,7 +15,7 @@ struct SetTask {
   const std::vector<AssemblyOperation>& operations;
   const std::vector<GripperActuator>& actuators;
   const PlanGrippersOptions& options;
-  const std::map<std::string, OperationLoad>& loads;  ///< By operation; only where holding is asked.
+  const std::map<std::string, OperationLoad>& loads;  ///< Keys are operations; only where holding is asked.
 };
 
 /// Chooses the least set and goes through every operation with it. Grasps that a rehearsal refuses are left out, and
@@ -49,7 +49,7 @@ class RehearsedSet {
   GraspPool& pool_;
   PlanGrippersResult& result_;
   const Monitor& monitor_;
-  double seconds_ = 0;                           // That searches for sets have taken.
+  double seconds_ = 0;                      // That searches for sets have taken.
   std::map<Rehearsal, std::string> known_;  // What was met by operations that were gone through before.
 };
 

@@ -55,8 +55,8 @@ GraspRank rank_of(const AssemblyGrasp& grasp, const OperationLoad* load, const H
           -rounded(held.contact_area, 1e-8)};
 }
 
-/// How far a gripper may close for its pads to be wide enough to hold the load; none: they never are. Pads are the wider
-/// the less it closes, and hold the more.
+/// How far a gripper may close for its pads to be wide enough to hold the load; none: they never are. Pads are the
+/// wider the less it closes, and hold the more.
 std::optional<double> least_min_opening(const Judgement& by, const AssemblyGrasp& grasp) {
   const auto holds = [&](double min_opening) {
     Gripper gripper;
@@ -122,7 +122,7 @@ struct SegmentToHold {
   const MeshSegment& segment;
   const FittedPrimitive& primitive;
   int fingers = 0;         // 2, 3, or 0: none suit it.
-  SurfacePieces keep_off;  // In the frame of the active subassembly.
+  SurfacePieces keep_off;  // Seen from the active subassembly.
   std::vector<AssemblyGrasp> grasps(const std::vector<GripperActuator>& drives,
                                     const PlanGrippersOptions& options) const {
     return assembly_grasps(part, segment, primitive, drives, options);
@@ -243,7 +243,7 @@ std::string nothing_to_try(const Judgement& by, const SegmentToHold& segment,
   note_drives(by, segment, drives, remedy, monitor);
   if (drives.empty()) return "no actuator has " + std::to_string(segment.fingers) + " fingers";
   return segment.fingers == 2 ? "no pair of opposite faces that an actuator opens wide enough for"
-                      : "wider than any actuator opens";
+                              : "wider than any actuator opens";
 }
 
 }  // namespace
@@ -283,8 +283,7 @@ SegmentRequirement required_by(const FreeGrasp& found, const SegmentFate& fate) 
 
 std::vector<FreeGrasp> undominated(std::vector<FreeGrasp> found) {
   const auto key = [](const FreeGrasp& f) {
-    return std::make_tuple(asked_opening(f.grasp), f.lengths.shortest, -f.lengths.longest, f.rank,
-                           f.least_min_opening);
+    return std::make_tuple(asked_opening(f.grasp), f.lengths.shortest, -f.lengths.longest, f.rank, f.least_min_opening);
   };
   std::stable_sort(found.begin(), found.end(), [&](const auto& a, const auto& b) { return key(a) < key(b); });
   std::vector<FreeGrasp> kept;
@@ -329,8 +328,7 @@ bool can_be_done(const Judgement& by, const Monitor& monitor) {
       SegmentFate fate;
       fate.step = by.operation.name;
       fate.fingers = segment.fingers;
-      for (const FreeGrasp& f :
-           free_ones(try_all(by, segment.grasps(drives, by.options), segment.keep_off, monitor))) {
+      for (const FreeGrasp& f : free_ones(try_all(by, segment.grasps(drives, by.options), segment.keep_off, monitor))) {
         const RequiredRange range = required_range(required_by(f, fate), asked);
         if (std::any_of(drives.begin(), drives.end(), [&](const auto& d) { return range.can_be_met(d); })) return true;
       }

@@ -22,7 +22,7 @@ struct FreeGrasp {
   FingerLengthRange lengths;
   HeldLoad held;
   GraspRank rank{};
-  double least_min_opening = 0;  ///< As SegmentRequirement's.
+  double least_min_opening = 0;            ///< As SegmentRequirement's.
   std::vector<FreeGrasp> in_reserve = {};  ///< No better than it in any way: tried where its rehearsal meets something.
 };
 
@@ -43,8 +43,8 @@ struct Judgement {
   const PlanGrippersOptions& options;
   const OperationLoad* load;  ///< None: weight and insertion are not looked at.
   const std::map<std::string, SegmentedPart>& parts;
-  const std::map<std::string, SurfacePieces>& keep_off;        ///< Pieces by part, in its mesh's frame.
-  const std::set<std::pair<std::string, int>>& untouchable;    ///< Segments by part and number.
+  const std::map<std::string, SurfacePieces>& keep_off;      ///< Pieces by part, in its mesh's frame.
+  const std::set<std::pair<std::string, int>>& untouchable;  ///< Segments by part and number.
 };
 
 /// How far each finger opens with the longest of these drives: as far as asked, where the stroke allows that beside the

@@ -78,7 +78,9 @@ class GripperPlan:
         for step in self.assembly.steps:
             if len(step.path) == 1 and step.passive:
                 stays = ", ".join(step.passive)
-                out.append(f"{step.name}: has neither from nor path: how it comes to its place past {stays} is not looked at")
+                out.append(
+                    f"{step.name}: has neither from nor path: how it comes to its place past {stays} is not looked at"
+                )
         return out
 
     @property

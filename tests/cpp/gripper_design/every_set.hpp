@@ -15,7 +15,7 @@ namespace mmgrasp::test {
 inline constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 inline SegmentRequirement segment(const std::string& part, int fingers, double opening, double shortest = 0,
-                           double longest = kInfinite) {
+                                  double longest = kInfinite) {
   return {part, "", fingers, opening, shortest, longest};
 }
 

@@ -256,11 +256,12 @@ TEST(MinimalGrippers, SayEachReasonOnceAndWhatIsAskedFor) {
   std::vector<SegmentRequirement> requirements(3, segment("a", 2, 0.1));
   for (SegmentRequirement& r : requirements) r.clearance = 0.002;
   requirements[1].segment = "rim";
-  EXPECT_EQ(minimal_grippers(requirements, {{"jaws", 2, 0.03, 0.102}}).explanations,
-            std::vector<std::string>{
-                "part 'a': it is 100 mm wide and asks for an opening of 104 mm, actuators with 2 fingers open to 102 mm "
-                "(2 times); segment 'rim': it is 100 mm wide and asks for an opening of 104 mm, actuators with 2 fingers "
-                "open to 102 mm"});
+  EXPECT_EQ(
+      minimal_grippers(requirements, {{"jaws", 2, 0.03, 0.102}}).explanations,
+      std::vector<std::string>{
+          "part 'a': it is 100 mm wide and asks for an opening of 104 mm, actuators with 2 fingers open to 102 mm "
+          "(2 times); segment 'rim': it is 100 mm wide and asks for an opening of 104 mm, actuators with 2 fingers "
+          "open to 102 mm"});
   EXPECT_EQ(minimal_grippers(requirements, {{"jaws", 2, 0.03, 0.104}}).outcome, Outcome::solved);
 }
 

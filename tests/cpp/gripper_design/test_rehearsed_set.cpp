@@ -83,8 +83,7 @@ TEST(RehearsedSet, OperationsKeepTheirOrderAndOneRefusalCostsTheOthersNothing) {
 
 TEST(RehearsedSet, NothingIsFoundWhereEveryGraspIsRefused) {
   const KeepOff ends{"key", {}, {{at(0.015, 0, 0), {0.002, 0.1, 0.1}}, {at(-0.015, 0, 0), {0.002, 0.1, 0.1}}}};
-  const PlanGrippersResult found =
-      plan_grippers({key_between_walls("key", kHair)}, kJaws, {ends}, without_clearance());
+  const PlanGrippersResult found = plan_grippers({key_between_walls("key", kHair)}, kJaws, {ends}, without_clearance());
   EXPECT_EQ(found.outcome, Outcome::not_found);
   ASSERT_TRUE(found.set);
   EXPECT_EQ(found.met, std::vector<std::string>{"finger_1 meets left wall during the motion"});

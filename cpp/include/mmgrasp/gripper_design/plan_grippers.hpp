@@ -83,8 +83,8 @@ struct MMGRASP_EXPORT PlanGrippersResult {
   /// One per requirement, with pads as wide as fingers may be, of those that were chosen as wide as their gripper's;
   /// empty where nothing is asked of holding.
   std::vector<HeldLoad> holdings;
-  std::vector<std::string> missing;          ///< Operations that cannot be done, each with the reasons.
-  std::vector<std::string> help;             ///< Single changes each of which gives an operation its grasp: tried.
+  std::vector<std::string> missing;  ///< Operations that cannot be done, each with the reasons.
+  std::vector<std::string> help;     ///< Single changes each of which gives an operation its grasp: tried.
   /// The least set; none when an operation has no grasp; the last one that was rehearsed where none goes through.
   std::optional<MinimalGrippersResult> set;
   std::vector<std::string> met;  ///< What each operation's rehearsal with `set` met; empty: nothing, or no set.
@@ -102,10 +102,11 @@ struct MMGRASP_EXPORT PlanGrippersResult {
 /// Each part that is moved is cut into segments, each segment is given its primitive (boxes are for two jaws, cylinders
 /// for three centric fingers, 5.2.1), and each grasp of it the finger lengths with which nothing is met over the whole
 /// operation (5.3). Then the least set is chosen (5.3.4), and every operation is gone through again with the gripper
-/// itself, by the collision checker; where that meets something, the set is chosen again without the grasp. Of several segments and depths that no more grippers could take, the one is taken
-/// on which the insertion bears most evenly, then the one held most safely, then the one touched on most surface.
-/// Throws InvalidInput for wrong operations (names must differ, no part is moved twice), actuators, surface to keep off
-/// or options (tips that end farther from the end of a part than any is large); what cannot be held is an answer.
+/// itself, by the collision checker; where that meets something, the set is chosen again without the grasp. Of several
+/// segments and depths that no more grippers could take, the one is taken on which the insertion bears most evenly,
+/// then the one held most safely, then the one touched on most surface. Throws InvalidInput for wrong operations (names
+/// must differ, no part is moved twice), actuators, surface to keep off or options (tips that end farther from the end
+/// of a part than any is large); what cannot be held is an answer.
 MMGRASP_EXPORT PlanGrippersResult plan_grippers(const std::vector<AssemblyOperation>& operations,
                                                 const std::vector<GripperActuator>& actuators,
                                                 const std::vector<KeepOff>& keep_off = {},

@@ -266,11 +266,13 @@ class Planning {
       why += "; " + f.part + "/" + f.name + ": " + f.refused;
     }
     result_.missing.push_back(why);
+    monitor_.report("what would help", 0);
     tell_help(advice_without_grasp(by, remedy, monitor_));
   }
 
   /// What would help the operations whose grasps no drive takes.
   void advise_on_drives() {
+    monitor_.report("what would help", 0);
     for (const AssemblyOperation& o : operations_) {
       const std::vector<std::string>& uncovered = result_.set->uncovered;
       if (std::find(uncovered.begin(), uncovered.end(), o.name) != uncovered.end())

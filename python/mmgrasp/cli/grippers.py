@@ -60,6 +60,6 @@ def _print(plan: GripperPlan, console: Console) -> None:
             markup=False,
             soft_wrap=True,
         )
-    console.print(f"- {result.changes} changes of the gripper", markup=False)
+    console.print(f"- {plural(result.changes, 'change')} of the gripper", markup=False)
     for refused in plan.refused_in_rehearsal:
         console.print(f"- left out, refused in rehearsal: {refused}", markup=False, soft_wrap=True)

@@ -45,14 +45,15 @@ std::string shown(double value) {
 SegmentRequirement make_requirement(const Given<std::string>& part, const Given<double>& opening,
                                     const Given<std::string>& segment, const Given<int>& fingers,
                                     const Given<double>& shortest, const std::optional<Given<double>>& longest,
-                                    const Given<double>& clearance) {
+                                    const Given<double>& clearance, const Given<double>& least_closed) {
   const SegmentRequirement requirement{taken(part, "part"),
                                        taken(segment, "segment"),
                                        taken(fingers, "fingers"),
                                        taken(opening, "opening"),
                                        taken(shortest, "min_finger_length"),
                                        or_infinite(longest, "max_finger_length"),
-                                       taken(clearance, "clearance")};
+                                       taken(clearance, "clearance"),
+                                       taken(least_closed, "least_min_opening")};
   requirement.check();
   return requirement;
 }
@@ -72,8 +73,9 @@ void bind_requirement(py::module_& m) {
       "    SegmentRequirement(\"sleeve\", 0.0375, fingers=3, min_finger_length=0.0227)")
       .def(py::init(&make_requirement), "part"_a, "opening"_a, py::kw_only(), "segment"_a = "", "fingers"_a = 2,
            "min_finger_length"_a = 0.0, "max_finger_length"_a = py::none(), "clearance"_a = 0.0,
+           "least_min_opening"_a = 0.0,
            "Part, opening [m], the segment's label, 2 or 3 fingers, limits of their length [m] (None: no upper one), "
-           "how far each finger opens to let go [m].")
+           "how far each finger opens to let go [m], how far the gripper may close [m].")
       .def_readonly("part", &R::part, "Whose segment it is.")
       .def_readonly("segment", &R::segment, "Its label.")
       .def_readonly("fingers", &R::fingers, "2: parallel jaws; 3: centric fingers.")
@@ -84,6 +86,9 @@ void bind_requirement(py::module_& m) {
           "[m]; None: any.")
       .def_readonly("clearance", &R::clearance,
                     "Each finger opens by this to let go: twice as much is kept free above the opening [m].")
+      .def_readonly("least_min_opening", &R::least_min_opening,
+                    "The gripper's smallest opening is no less [m]: centric fingers that close farther have pads too "
+                    "narrow to hold it.")
       .def("__repr__", [](const R& r) {
         return "SegmentRequirement(" + r.name() + ", " + std::to_string(r.fingers) + " fingers, opening " +
                shown(r.opening) + ")";
@@ -136,9 +141,13 @@ void bind_gripper(py::module_& m) {
       .def_property_readonly(
           "pad_width", &G::pad_width,
           "Width of the pad across the approach: the finger's, or what three fingers that close leave of it [m].")
+      .def_property_readonly("palm_radius", &G::palm_radius,
+                             "Radius of the palm, a cylinder that covers the fingers while they are open [m].")
       .def(
           "holds", [](const G& g, const Given<SegmentRequirement>& r) { return g.holds(taken(r, "requirement")); },
-          "requirement"_a, "Whether it holds a segment: (5.2) of P1 with <= in place of <, to 1e-9 m.")
+          "requirement"_a,
+          "Whether it holds a segment: (5.2) of P1 with <= in place of <, to 1e-9 m, and closes no farther than it "
+          "allows.")
       .def(
           "hand", &G::hand,
           "The Hand that it is, for planners and samplers: tool frame \"tool\", names as to_urdf() writes them. Of two "

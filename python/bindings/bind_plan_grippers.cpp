@@ -28,6 +28,7 @@ const std::vector<OptionField<PlanGrippersOptions>>& plan_grippers_fields() {
       option<O>("change_cost", &O::change_cost, "of changing the gripper between two operations"),
       option<O>("max_nodes", &O::max_nodes, "of the search for fewest changes"),
       option<O>("time_limit", &O::time_limit, "the search for the least set ends after this, on the clock [s]"),
+      option<O>("max_rehearsals", &O::max_rehearsals, "most sets that are rehearsed, each without what met something"),
       option<O>("threads", &O::threads, "0: all")};
   return fields;
 }
@@ -105,15 +106,21 @@ void bind_plan_result(py::module_& m) {
         return "SegmentFate(" + f.step + ", " + f.part + "/" + f.name + ": " +
                (f.refused.empty() ? "held" : f.refused) + ")";
       });
+  using G = RefusedGrasp;
+  py::class_<G>(m, "RefusedGrasp", "A grasp that the rehearsal of its operation refused.")
+      .def_readonly("requirement", &G::requirement, "Its number in the plan.")
+      .def_readonly("met", &G::met, "What it met with the gripper chosen for it then.")
+      .def("__repr__",
+           [](const G& g) { return "RefusedGrasp(requirement " + std::to_string(g.requirement) + ": " + g.met + ")"; });
   using R = PlanGrippersResult;
   py::class_<R>(m, "PlanGrippersResult", "The grippers of an assembly, and how they were come by.")
       .def_readonly(
           "outcome", &R::outcome,
-          "`solved`: each operation has a gripper that was rehearsed, and the set is proven; `infeasible`: "
-          "an operation "
-          "has no grasp to try, or its parts stand in each other (missing), or no drive takes it (set); "
-          "`not_found`: no grasp that was tried goes through an operation, or a rehearsal met something, or a "
-          "chosen gripper's pads slip; `stopped`; else as the set's.")
+          "`solved`: each operation has a gripper that was rehearsed, and the set is proven to be the least for the "
+          "grasps that were not left_out; `infeasible`: an operation has no grasp to try, or its parts stand in each "
+          "other (missing), or no drive takes it (set); `not_found`: no grasp that was tried goes through an "
+          "operation, or a rehearsal refuses all of them (pads that slip, too), or refused one of each of "
+          "max_rehearsals sets; `stopped`; else as the set's.")
       .def_readonly("parts", &R::parts, "The parts that are moved, by name.")
       .def_readonly("fates", &R::fates, "Every segment of what is moved, in every operation.")
       .def_readonly("requirements", &R::requirements, "One per grasp kept; `part` is the operation's name.")
@@ -122,9 +129,15 @@ void bind_plan_result(py::module_& m) {
                     "One per requirement, of those chosen with their gripper's real pads; empty where nothing is asked "
                     "of holding.")
       .def_readonly("missing", &R::missing, "Operations that cannot be done, each with the reasons.")
-      .def_readonly("help", &R::help, "Single changes each of which gives an operation its grasp.")
-      .def_readonly("set", &R::set, "The least set; None when something is missing.")
-      .def_readonly("met", &R::met, "What each operation's rehearsal met, '' nothing; empty without a set.")
+      .def_readonly("help", &R::help, "Single changes each of which gives an operation its grasp: tried.")
+      .def_readonly("set", &R::set,
+                    "The least set; None when an operation has no grasp; the last one that was rehearsed where none "
+                    "goes through.")
+      .def_readonly("met", &R::met, "What each operation's rehearsal with the set met, '' nothing; empty without one.")
+      .def_readonly("left_out", &R::left_out,
+                    "Grasps that a rehearsal refused, in that order. They were left out of the choice of the sets that "
+                    "followed, with whatever gripper: the last set is the least for the others.")
+      .def_readonly("rehearsals", &R::rehearsals, "So many sets were rehearsed.")
       .def("__repr__", [](const R& r) {
         return std::string("PlanGrippersResult(") + to_string(r.outcome) + ", " +
                std::to_string(r.set ? r.set->grippers.size() : 0) + " grippers)";
@@ -160,7 +173,8 @@ void bind_plan_grippers(py::module_& m) {
       ("The least set of grippers that puts an assembly together (P1 chapter 5), from meshes and an order: segments, "
        "primitives (boxes for two jaws, cylinders for three centric fingers), grasps that meet nothing over the whole "
        "operation with some finger length, the least set, and every operation gone through again with the gripper "
-       "itself by the collision checker. Of several segments and depths that no more grippers could take, the one is "
+       "itself by the collision checker; where that meets something, the set is chosen again without the grasp. Of "
+       "several segments and depths that no more grippers could take, the one is "
        "taken on which the insertion bears most evenly, then the one held most safely (both with `holding`), then the "
        "one touched on most surface." +
        option_help(plan_grippers_fields()))

@@ -35,6 +35,7 @@ from ._core import (
     KeepOff as KeepOff,
     SegmentedPart as SegmentedPart,
     SegmentFate as SegmentFate,
+    RefusedGrasp as RefusedGrasp,
     PlanGrippersResult as PlanGrippersResult,
     plan_grippers as plan_grippers,
     assembly_grasps as assembly_grasps,

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "mmgrasp/core/detail/file_content.hpp"
+#include "mmgrasp/core/detail/lengths.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/limits.hpp"
@@ -20,7 +21,6 @@ namespace {
 
 using detail::kPi;
 
-constexpr double kEqual = 1e-9;       // [m]
 constexpr double kLongestPad = 0.02;  // [m]
 constexpr double kDensity = 1240;     // Density of a printed plastic (PLA) [kg/m3].
 constexpr double kGap = 1e-4;         // Between the flanks of closed centric fingers [m].
@@ -40,7 +40,7 @@ std::vector<Eigen::Vector2d> outline(const Gripper& g) {
   if (pad < back) {
     const double depth = (back + kGap) / std::tan(kPi / 3) - g.min_opening / 2;  // Where it is as wide as at the back.
     if (pad == 0) right.front().x() = std::max(0.0, kGap / std::tan(kPi / 3) - g.min_opening / 2);
-    if (depth < g.finger_thickness - kEqual) right.emplace_back(depth, -back);
+    if (!detail::at_most(g.finger_thickness, depth)) right.emplace_back(depth, -back);
   }
   right.emplace_back(g.finger_thickness, -back);
   std::vector<Eigen::Vector2d> all = right;
@@ -202,9 +202,10 @@ void Gripper::check() const {
 }
 
 bool Gripper::holds(const SegmentRequirement& requirement) const {
-  return requirement.fingers == fingers && min_opening <= requirement.opening + kEqual &&
-         requirement.opening <= max_opening + kEqual && requirement.min_finger_length <= finger_length + kEqual &&
-         finger_length <= requirement.max_finger_length + kEqual;
+  using detail::at_most;
+  return requirement.fingers == fingers && at_most(min_opening, requirement.opening) &&
+         at_most(requirement.least_min_opening, min_opening) && at_most(requirement.opening, max_opening) &&
+         at_most(requirement.min_finger_length, finger_length) && at_most(finger_length, requirement.max_finger_length);
 }
 
 double Gripper::pad_length() const {

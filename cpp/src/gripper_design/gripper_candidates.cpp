@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <set>
 #include <string>
 #include <unordered_map>
 #include <utility>
 
+#include "mmgrasp/core/detail/lengths.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/limits.hpp"
@@ -16,7 +18,6 @@
 namespace mmgrasp::detail {
 namespace {
 
-constexpr double kEqual = 1e-9;  // [m]
 /// Among dearer grippers, the proof of the least set (to 1e-9 of its cost) would not tell the cheap ones apart.
 constexpr double kMostTimesLeast = 1e6;
 
@@ -87,10 +88,12 @@ class Places {
   /// What lies between the openings of a gripper that opens from `low`, by the shortest fingers asked.
   std::vector<Asked> between(double low) const {
     const auto begin = std::partition_point(asked_.begin(), asked_.end(),
-                                            [&](const Asked& a) { return a.range.lowest + kEqual < low; });
+                                            [&](const Asked& a) { return !at_most(low, a.range.lowest); });
     const auto end = std::partition_point(
-        begin, asked_.end(), [&](const Asked& a) { return a.range.highest <= low + actuator_.stroke + kEqual; });
-    std::vector<Asked> out(begin, end);
+        begin, asked_.end(), [&](const Asked& a) { return at_most(a.range.highest, low + actuator_.stroke); });
+    std::vector<Asked> out;
+    std::copy_if(begin, end, std::back_inserter(out),
+                 [&](const Asked& a) { return at_most(a.range.least_closed, low); });
     std::sort(out.begin(), out.end(), [](const Asked& a, const Asked& b) {
       return std::make_pair(a.range.shortest, a.range.longest) < std::make_pair(b.range.shortest, b.range.longest);
     });
@@ -100,8 +103,8 @@ class Places {
   static std::vector<int> taken(const std::vector<Asked>& within, double length) {
     std::vector<int> out;
     for (const Asked& a : within) {
-      if (a.range.shortest > length + kEqual) break;
-      if (length <= a.range.longest + kEqual) out.push_back(a.requirement);
+      if (!at_most(a.range.shortest, length)) break;
+      if (at_most(length, a.range.longest)) out.push_back(a.requirement);
     }
     return out;
   }
@@ -113,12 +116,12 @@ class Places {
     double first_end = kInfinity;  // Least upper end of the ranges that the current length takes.
     for (std::size_t i = 0; i < within.size(); ++i) {
       const RequiredRange& range = within[i].range;
-      if (i > 0 && range.shortest > first_end + kEqual) {
+      if (i > 0 && !at_most(range.shortest, first_end)) {
         lengths.push_back(within[i - 1].range.shortest);
         first_end = kInfinity;
         for (std::size_t k = 0; k < i; ++k) {
           const double end = within[k].range.longest;
-          if (end >= range.shortest - kEqual) first_end = std::min(first_end, end);
+          if (at_most(range.shortest, end)) first_end = std::min(first_end, end);
         }
       }
       first_end = std::min(first_end, range.longest);
@@ -214,14 +217,15 @@ void check_actuators(const std::vector<GripperActuator>& actuators) {
 }
 
 bool RequiredRange::can_be_met(const GripperActuator& actuator) const {
-  return highest <= actuator.max_opening + kEqual && highest - lowest <= actuator.stroke + kEqual &&
-         shortest <= longest + kEqual;
+  return at_most(highest, actuator.max_opening) && at_most(highest - lowest, actuator.stroke) &&
+         at_most(shortest, longest) && at_most(least_closed, std::min(lowest, actuator.max_opening - actuator.stroke));
 }
 
 RequiredRange required_range(const SegmentRequirement& requirement, const MinimalGrippersOptions& options) {
   RequiredRange range;
   range.lowest = std::max(0.0, requirement.opening - options.opening_margin);
   range.highest = requirement.opening + std::max(options.opening_margin, 2 * requirement.clearance);
+  range.least_closed = requirement.least_min_opening;
   range.shortest = std::max(options.shortest_finger, requirement.min_finger_length + options.length_margin);
   range.longest = std::min(options.longest_finger, requirement.max_finger_length - options.length_margin);
   return range;
@@ -230,8 +234,9 @@ RequiredRange required_range(const SegmentRequirement& requirement, const Minima
 bool meets(const GripperActuator& actuator, double min_opening, double finger_length,
            const SegmentRequirement& requirement, const RequiredRange& range) {
   return requirement.fingers == actuator.fingers && range.can_be_met(actuator) &&
-         min_opening <= range.lowest + kEqual && range.highest <= min_opening + actuator.stroke + kEqual &&
-         range.shortest <= finger_length + kEqual && finger_length <= range.longest + kEqual;
+         at_most(range.least_closed, min_opening) && at_most(min_opening, range.lowest) &&
+         at_most(range.highest, min_opening + actuator.stroke) && at_most(range.shortest, finger_length) &&
+         at_most(finger_length, range.longest);
 }
 
 std::optional<std::vector<GripperCandidate>> gripper_candidates(const std::vector<SegmentRequirement>& requirements,

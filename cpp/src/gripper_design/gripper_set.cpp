@@ -23,7 +23,7 @@ Gripper fitted(const GripperSetQuestion& question, const GripperCandidate& candi
   gripper.finger_width = options.finger_width;
   gripper.finger_thickness = options.finger_thickness;
   if (options.grid_openings == 0) {
-    double narrowest = kInfinity, widest = 0, lowest = kInfinity, highest = 0;
+    double narrowest = kInfinity, widest = 0, lowest = kInfinity, highest = 0, least_closed = 0;
     gripper.finger_length = options.shortest_finger;
     for (std::size_t p = 0; p < result.gripper_of_part.size(); ++p) {
       if (result.gripper_of_part[p] != index) continue;
@@ -33,11 +33,12 @@ Gripper fitted(const GripperSetQuestion& question, const GripperCandidate& candi
       const RequiredRange range = required_range(r, options);
       lowest = std::min(lowest, range.lowest);
       highest = std::max(highest, range.highest);
+      least_closed = std::max(least_closed, range.least_closed);
       gripper.finger_length = std::max(gripper.finger_length, range.shortest);
     }
     // Evenly about the parts, as far as the margins let it: these may differ below and above.
-    const double even =
-        std::min(std::max((narrowest + widest - actuator.stroke) / 2, highest - actuator.stroke), lowest);
+    double even = std::min(std::max((narrowest + widest - actuator.stroke) / 2, highest - actuator.stroke), lowest);
+    if (least_closed > even) even = lowest;  // Pads are the wider the less centric fingers close.
     gripper.min_opening = std::max(0.0, std::min(even, actuator.max_opening - actuator.stroke));
   }
   gripper.max_opening = gripper.min_opening + actuator.stroke;

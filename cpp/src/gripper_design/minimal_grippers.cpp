@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
 
+#include "gripper_design/counted_texts.hpp"
 #include "gripper_design/fewest_changes.hpp"
 #include "gripper_design/gripper_candidates.hpp"
 #include "gripper_design/gripper_set.hpp"
+#include "gripper_design/millimetres.hpp"
+#include "mmgrasp/core/detail/lengths.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/detail/stopwatch.hpp"
 #include "mmgrasp/core/error.hpp"
@@ -22,11 +24,8 @@ using namespace detail;
 constexpr int kMaxRequirements = 100000;
 constexpr int kMaxGrid = 10000;
 
-std::string millimetres(double length) {
-  std::ostringstream out;
-  out.precision(10);
-  out << 1000 * length << " mm";
-  return out.str();
+std::string exactly(double length) {
+  return millimetres(length, 10);
 }
 
 /// Why no drive takes a segment.
@@ -34,15 +33,15 @@ std::string refusal(const SegmentRequirement& requirement, const std::vector<Gri
                     const MinimalGrippersOptions& options) {
   const RequiredRange range = required_range(requirement, options);
   const std::string fingers = std::to_string(requirement.fingers) + " fingers";
-  if (range.shortest > range.longest + 1e-9) {
+  if (!at_most(range.shortest, range.longest)) {
     const std::string required =
         requirement.max_finger_length < kInfinity
-            ? "from " + millimetres(requirement.min_finger_length) + " to " + millimetres(requirement.max_finger_length)
-            : "from " + millimetres(requirement.min_finger_length);
+            ? "from " + exactly(requirement.min_finger_length) + " to " + exactly(requirement.max_finger_length)
+            : "from " + exactly(requirement.min_finger_length);
     return "its fingers must be " + required +
-           " long, not within shortest_finger = " + millimetres(options.shortest_finger) +
-           " and longest_finger = " + millimetres(options.longest_finger) +
-           (options.length_margin > 0 ? " with length_margin = " + millimetres(options.length_margin) : "");
+           " long, not within shortest_finger = " + exactly(options.shortest_finger) +
+           " and longest_finger = " + exactly(options.longest_finger) +
+           (options.length_margin > 0 ? " with length_margin = " + exactly(options.length_margin) : "");
   }
   double widest = 0, longest_stroke = 0;
   for (const GripperActuator& a : actuators) {
@@ -51,14 +50,20 @@ std::string refusal(const SegmentRequirement& requirement, const std::vector<Gri
     longest_stroke = std::max(longest_stroke, a.stroke);
   }
   if (widest == 0) return "no actuator has " + fingers;
-  if (range.highest > widest + 1e-9)
-    return "it is " + millimetres(requirement.opening) + " wide, actuators with " + fingers + " open to " +
-           millimetres(widest);
-  return options.grid_openings > 0 && range.highest - range.lowest <= longest_stroke + 1e-9
+  if (!at_most(range.highest, widest))
+    return "it is " + exactly(requirement.opening) + " wide" +
+           (range.highest > requirement.opening ? " and asks for an opening of " + exactly(range.highest) : "") +
+           ", actuators with " + fingers + " open to " + exactly(widest);
+  RequiredRange closing = range;
+  closing.least_closed = 0;
+  const auto by_closing = [&](const auto& a) { return a.fingers == requirement.fingers && closing.can_be_met(a); };
+  if (options.grid_openings == 0 && std::any_of(actuators.begin(), actuators.end(), by_closing))
+    return "its gripper must not close below " + exactly(range.least_closed) + ", those that take it do";
+  return options.grid_openings > 0 && at_most(range.highest - range.lowest, longest_stroke)
              ? "no gripper on the grid takes it: use a finer grid, or none"
-             : "opening_margin = " + millimetres(options.opening_margin) +
+             : "opening_margin = " + exactly(options.opening_margin) +
                    (2 * requirement.clearance > options.opening_margin
-                        ? " and a clearance of " + millimetres(requirement.clearance) + " leave"
+                        ? " and a clearance of " + exactly(requirement.clearance) + " leave"
                         : " leaves") +
                    " too little of the stroke";
 }
@@ -120,15 +125,15 @@ class Problem {
     for (const GripperCandidate& c : candidates_) covered |= c.parts;
     for (int p = 0; p < part_count(); ++p) {
       if (covered.test(p)) continue;
-      std::string why;
+      CountedTexts why;
       for (std::size_t r = 0; r < requirements_.size(); ++r) {
         if (parts_.of_requirement[r] != p) continue;
         const std::string label =
             requirements_[r].segment.empty() ? "" : "segment '" + requirements_[r].segment + "': ";
-        why += (why.empty() ? "" : "; ") + label + refusal(requirements_[r], actuators_, options_);
+        why.add(label + refusal(requirements_[r], actuators_, options_));
       }
       result.uncovered.push_back(parts_.names[p]);
-      result.explanations.push_back("part '" + parts_.names[p] + "': " + why);
+      result.explanations.push_back("part '" + parts_.names[p] + "': " + why.joined());
     }
   }
 

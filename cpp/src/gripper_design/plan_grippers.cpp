@@ -4,40 +4,27 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <sstream>
 
+#include "gripper_design/advice.hpp"
+#include "gripper_design/grasp_pool.hpp"
 #include "gripper_design/gripper_candidates.hpp"
+#include "gripper_design/millimetres.hpp"
+#include "gripper_design/rehearsed_set.hpp"
 #include "gripper_design/segment_judgement.hpp"
+#include "gripper_design/set_options.hpp"
+#include "mmgrasp/core/detail/lengths.hpp"
 #include "mmgrasp/core/detail/near_name.hpp"
-#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/core/parallel.hpp"
 #include "mmgrasp/geometry/detail/inside_out.hpp"
+#include "mmgrasp/geometry/shape.hpp"
 #include "mmgrasp/gripper_design/operation_overlap.hpp"
-#include "mmgrasp/gripper_design/rehearse_operation.hpp"
 
 namespace mmgrasp {
 namespace {
 
 using namespace detail;
-
-constexpr double kLeastPad = 1e-6;  // Narrower ones are edges [m].
-
-std::string millimetres(double length) {
-  std::ostringstream out;
-  out.precision(4);
-  out << 1e3 * length << " mm";
-  return out.str();
-}
-
-/// To 0.01 mm, up (`side` 1) or down (-1).
-std::string rounded(double length, int side) {
-  std::ostringstream out;
-  out.precision(8);
-  out << side * std::ceil(1e5 * side * length - 1e-6) / 100 << " mm";
-  return out.str();
-}
 
 void check_operations(const std::vector<AssemblyOperation>& operations) {
   if (operations.empty()) throw InvalidInput("operations is empty: name at least one");
@@ -58,6 +45,16 @@ void check_operations(const std::vector<AssemblyOperation>& operations) {
           throw InvalidInput("operation '" + o.name + "': part '" + part.name + "' cannot be moved and stay");
     }
   }
+}
+
+/// Tips that end short of everything hold nothing.
+void check_tip_clearance(const std::vector<AssemblyOperation>& operations, const PlanGrippersOptions& options) {
+  double largest = 0;
+  for (const AssemblyOperation& o : operations)
+    for (const PlacedMesh& part : o.active)
+      largest = std::max(largest, shape_bounds(MeshShape{part.mesh}).diagonal().norm());
+  require(at_most(options.tip_clearance, largest), "tip_clearance", options.tip_clearance,
+          "must be no longer than the largest part that is moved, " + millimetres(largest) + " from corner to corner");
 }
 
 /// What is wrong with surface to keep off is told with who asked for it.
@@ -81,32 +78,6 @@ int segment_called(const std::string& name, const std::string& part, const std::
   require(at != names.end(), "keep_off of part '" + part + "'", name,
           "must be the name of one of its segments, " + all + near_miss(own, names));
   return static_cast<int>(at - names.begin());
-}
-
-MinimalGrippersOptions set_options(const PlanGrippersOptions& options) {
-  MinimalGrippersOptions out;
-  out.shortest_finger = options.shortest_finger;
-  out.longest_finger = options.longest_finger;
-  out.opening_margin = options.opening_margin;
-  out.length_margin = options.length_margin;
-  out.finger_width = options.finger_width;
-  out.finger_thickness = options.finger_thickness;
-  out.change_cost = options.change_cost;
-  out.max_nodes = options.max_nodes;
-  out.time_limit = options.time_limit;
-  return out;
-}
-
-/// Higher where the rank is better; equal ranks are worth the same.
-std::vector<double> values_of(const std::vector<GraspRank>& ranks) {
-  std::vector<GraspRank> order = ranks;
-  std::sort(order.begin(), order.end(), std::greater<>());
-  order.erase(std::unique(order.begin(), order.end()), order.end());
-  std::vector<double> out;
-  for (const GraspRank& r : ranks)
-    out.push_back(
-        static_cast<double>(std::lower_bound(order.begin(), order.end(), r, std::greater<>()) - order.begin()));
-  return out;
 }
 
 /// The operations, with open meshes that are inside out turned outwards: pads look for outward faces.
@@ -145,7 +116,8 @@ class Planning {
         operations_(outward.operations()),
         actuators_(actuators),
         options_(options),
-        monitor_(monitor) {}
+        monitor_(monitor),
+        pool_(result_, options.holding.has_value()) {}
 
   PlanGrippersResult run(const std::vector<KeepOff>& keep_off) {
     find_boxes(keep_off);
@@ -159,12 +131,8 @@ class Planning {
     if (monitor_.stopped()) return std::move(result_);
     result_.outcome = impossible_ ? Outcome::infeasible : Outcome::not_found;
     if (!result_.missing.empty()) return std::move(result_);
-    result_.set =
-        preferred_grippers(result_.requirements, values_of(ranks_), actuators_, set_options(options_), monitor_);
-    result_.outcome = result_.set->outcome;
-    if (result_.set->grippers.empty()) return std::move(result_);
-    if (options_.holding) judge_real_pads();
-    rehearse();
+    RehearsedSet({operations_, actuators_, options_, loads_}, pool_, result_, monitor_).find();
+    if (result_.outcome == Outcome::infeasible) advise_on_drives();
     return std::move(result_);
   }
 
@@ -261,51 +229,34 @@ class Planning {
       impossible_ = true;
       return;
     }
-    std::optional<OperationLoad> load;
-    if (options_.holding) load = loads_[operation.name] = operation_load(operation, *options_.holding);
-    const Judgement by{operation, actuators_, options_, load, keep_off_};
+    if (options_.holding) loads_[operation.name] = operation_load(operation, *options_.holding);
+    const Judgement by = judgement_of(operation);
     const std::size_t first = result_.fates.size(), before = result_.requirements.size();
     Remedy remedy;
     for (const PlacedMesh& part : operation.active) {
-      const SegmentedPart& segmented = result_.parts.at(part.name);
-      const std::vector<std::string> names = segment_names(segmented.primitives);
-      for (int s = 0; s < static_cast<int>(segmented.primitives.size()) && !monitor_.stopped(); ++s) {
+      const std::vector<std::string> names = segment_names(result_.parts.at(part.name).primitives);
+      for (int s = 0; s < static_cast<int>(names.size()) && !monitor_.stopped(); ++s) {
         SegmentFate fate;
         fate.step = operation.name;
         fate.part = part.name;
         fate.segment = s;
         fate.name = names[s];
-        keep(judge_or_refuse(by, part, segmented, fate, remedy), fate);
+        std::vector<FreeGrasp> found = judge_segment(by, part, fate, remedy, monitor_);
         result_.fates.push_back(std::move(fate));
+        pool_.add(std::move(found), result_.fates.size() - 1);
       }
     }
-    if (result_.requirements.size() == before && !monitor_.stopped()) tell_missing(operation, first, remedy);
+    if (result_.requirements.size() == before && !monitor_.stopped()) tell_missing(by, first, remedy);
   }
 
-  std::vector<FreeGrasp> judge_or_refuse(const Judgement& by, const PlacedMesh& part, const SegmentedPart& segmented,
-                                         SegmentFate& fate, Remedy& remedy) {
-    if (untouchable_.count({part.name, fate.segment}) == 0)
-      return judge_segment(by, part, segmented, fate, remedy, monitor_);
-    fate.kind = primitive_kind_name(segmented.primitives[fate.segment].kind);
-    fate.fingers = fingers_for(segmented.primitives[fate.segment].kind);
-    fate.refused = "not to be touched";
-    return {};
+  Judgement judgement_of(const AssemblyOperation& operation) const {
+    const auto load = loads_.find(operation.name);
+    return {operation,     actuators_, options_,    load == loads_.end() ? nullptr : &load->second,
+            result_.parts, keep_off_,  untouchable_};
   }
 
-  void keep(std::vector<FreeGrasp> found, SegmentFate& fate) {
-    for (FreeGrasp& f : found) {
-      fate.requirements.push_back(static_cast<int>(result_.requirements.size()));
-      result_.requirements.push_back({fate.step, fate.part + "/" + fate.name, fate.fingers,
-                                      1e-6 * std::round(1e6 * f.grasp.opening), f.lengths.shortest, f.lengths.longest,
-                                      f.grasp.clearance});
-      result_.grasps.push_back(std::move(f.grasp));
-      if (options_.holding) result_.holdings.push_back(f.held);
-      ranks_.push_back(f.rank);
-    }
-  }
-
-  void tell_missing(const AssemblyOperation& operation, std::size_t first, const Remedy& remedy) {
-    std::string why = operation.name + ": no segment can be held";
+  void tell_missing(const Judgement& by, std::size_t first, const Remedy& remedy) {
+    std::string why = by.operation.name + ": no segment can be held";
     // Grasps are tried in steps: only where there are none to try, it is proven that there is none.
     const auto tried = [](const SegmentFate& f) { return f.tried > 0; };
     if (std::none_of(result_.fates.begin() + static_cast<std::ptrdiff_t>(first), result_.fates.end(), tried))
@@ -315,87 +266,22 @@ class Planning {
       why += "; " + f.part + "/" + f.name + ": " + f.refused;
     }
     result_.missing.push_back(why);
-    const auto help = [&](const std::string& what) { result_.help.push_back(operation.name + ": " + what); };
-    if (remedy.longest_finger >= 0) help("fingers of " + rounded(remedy.longest_finger, 1) + " would do");
-    if (remedy.shortest_finger > 0) help("fingers as short as " + rounded(remedy.shortest_finger, -1) + " would do");
-    if (remedy.min_contact > 0) help("a min_contact of " + rounded(remedy.min_contact, -1) + " would do");
-    for (const auto& [fingers, drive] : remedy.drives)
-      help("a drive with " + std::to_string(fingers) + " fingers, a stroke of " + rounded(drive.stroke, 1) +
-           " and an opening of up to " + rounded(drive.max_opening, 1) + " would do");
+    monitor_.report("what would help", 0);
+    tell_help(advice_without_grasp(by, remedy, monitor_));
   }
 
-  /// Grasps were judged with pads as wide as fingers may be: now with those of the grippers that were chosen. Pads of
-  /// centric fingers are the wider the less these close, which is made use of where a part would slip.
-  void judge_real_pads() {
-    MinimalGrippersResult& set = *result_.set;
-    for (std::size_t g = 0; g < set.grippers.size(); ++g) {
-      if (slipping(g)) close_less(g);
-    }
-    for (std::size_t i = 0; i < operations_.size(); ++i) {
-      const std::size_t taken = set.requirement_of_part[i];
-      result_.grasps[taken] = with_real_pad(i);
-      result_.holdings[taken] = held_load(result_.grasps[taken], loads_.at(operations_[i].name));
+  /// What would help the operations whose grasps no drive takes.
+  void advise_on_drives() {
+    monitor_.report("what would help", 0);
+    for (const AssemblyOperation& o : operations_) {
+      const std::vector<std::string>& uncovered = result_.set->uncovered;
+      if (std::find(uncovered.begin(), uncovered.end(), o.name) != uncovered.end())
+        tell_help(advice_without_drive(judgement_of(o), monitor_));
     }
   }
 
-  AssemblyGrasp with_real_pad(std::size_t operation) const {
-    const MinimalGrippersResult& set = *result_.set;
-    AssemblyGrasp grasp = result_.grasps[set.requirement_of_part[operation]];
-    const double width = set.grippers[set.gripper_of_part[operation]].pad_width();
-    grasp.contact_width = std::min(grasp.contact_width, std::max(width, kLeastPad));
-    return grasp;
-  }
-
-  bool slips(std::size_t operation) const {
-    const HeldLoad held = held_load(with_real_pad(operation), loads_.at(operations_[operation].name));
-    return held.safety < options_.holding->least_safety;
-  }
-
-  bool slipping(std::size_t gripper) const {
-    for (std::size_t i = 0; i < operations_.size(); ++i)
-      if (result_.set->gripper_of_part[i] == static_cast<int>(gripper) && slips(i)) return true;
-    return false;
-  }
-
-  /// Mounts a gripper's fingers as wide apart as the margins of what it takes let it.
-  void close_less(std::size_t gripper) {
-    MinimalGrippersResult& set = *result_.set;
-    Gripper& g = set.grippers[gripper];
-    const double stroke = g.max_opening - g.min_opening;
-    double lowest = kInfinity;
-    for (std::size_t i = 0; i < operations_.size(); ++i) {
-      if (set.gripper_of_part[i] != static_cast<int>(gripper)) continue;
-      const SegmentRequirement& r = result_.requirements[set.requirement_of_part[i]];
-      lowest = std::min(lowest, required_range(r, set_options(options_)).lowest);
-    }
-    for (const GripperActuator& a : actuators_)
-      if (a.name == g.actuator) lowest = std::min(lowest, a.max_opening - a.stroke);
-    g.min_opening = std::max(g.min_opening, lowest);
-    g.max_opening = g.min_opening + stroke;
-  }
-
-  /// What became of an operation with the gripper chosen for it.
-  std::string gone_through(std::size_t operation) const {
-    const MinimalGrippersResult& set = *result_.set;
-    const Gripper& gripper = set.grippers[set.gripper_of_part[operation]];
-    if (options_.holding && slips(operation))
-      return "pads slip: those of " + gripper.name + ", " + millimetres(gripper.pad_width()) +
-             " wide, do not hold weight and insertion";
-    return rehearse_operation(gripper, result_.grasps[set.requirement_of_part[operation]], operations_[operation]);
-  }
-
-  void rehearse() {
-    result_.met.resize(operations_.size());
-    Monitor silent;
-    silent.stop = monitor_.stop;
-    const auto work = [&](std::size_t i, int) { result_.met[i] = gone_through(i); };
-    if (!parallel_for(operations_.size(), options_.threads, work, monitor_, "rehearsal")) {
-      result_.outcome = Outcome::stopped;
-      result_.met.clear();  // What was not gone through has not met nothing.
-      return;
-    }
-    const bool met = std::any_of(result_.met.begin(), result_.met.end(), [](const auto& m) { return !m.empty(); });
-    if (met) result_.outcome = Outcome::not_found;
+  void tell_help(const std::vector<std::string>& help) {
+    result_.help.insert(result_.help.end(), help.begin(), help.end());
   }
 
   const OutwardOperations& outward_;
@@ -405,10 +291,10 @@ class Planning {
   const Monitor& monitor_;
   std::map<std::string, SurfacePieces> keep_off_;
   std::set<std::pair<std::string, int>> untouchable_;
-  std::vector<GraspRank> ranks_;
   std::map<std::string, OperationLoad> loads_;  // Keys are operations; only where holding is asked.
   bool impossible_ = false;                     // Some operation, whatever grasps are tried.
   PlanGrippersResult result_;
+  GraspPool pool_;
 };
 
 }  // namespace
@@ -421,6 +307,7 @@ void PlanGrippersOptions::check() const {
   require_not_negative(tip_clearance, "tip_clearance", "m");
   require_not_negative(max_overlap, "max_overlap", "m");
   require(directions >= 1 && directions <= 360, "directions", directions, "must be from 1 to 360");
+  require_count(max_rehearsals, "max_rehearsals");
   resolve_threads(threads);  // refuses what is no number of threads
   if (holding) holding->check();
 }
@@ -431,6 +318,7 @@ PlanGrippersResult plan_grippers(const std::vector<AssemblyOperation>& operation
   options.check();
   check_operations(operations);
   check_actuators(actuators);
+  check_tip_clearance(operations, options);
   const OutwardOperations outward(operations);
   return Planning(outward, actuators, options, monitor).run(keep_off);
 }

@@ -20,6 +20,8 @@ void SegmentRequirement::check() const {
   require(max_finger_length >= min_finger_length, "max_finger_length" + of, max_finger_length,
           "must be at least min_finger_length [m]");
   require_not_negative(clearance, "clearance" + of, "m");
+  require_not_negative(least_min_opening, "least_min_opening" + of, "m");
+  require(least_min_opening <= opening, "least_min_opening" + of, least_min_opening, "must be at most opening [m]");
 }
 
 }  // namespace mmgrasp

@@ -10,7 +10,7 @@ import numpy.typing
 import os
 import typing
 from . import verify
-__all__: list[str] = ['AssemblyGrasp', 'AssemblyOperation', 'BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'BeamExtreme', 'BeamFrame', 'BeamMaterial', 'BeamMember', 'BeamSection', 'BeamState', 'BeamSupport', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactArea', 'ContactPairProvenance', 'ContactPatch', 'CuboidFit', 'Cylinder', 'DepthCamera', 'DepthImage', 'DepthNoise', 'DerivativeFreeResult', 'DistanceField', 'DistanceResult', 'DrawnSuccess', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'Facet', 'FeasibleGrasp', 'FingerGrip', 'FingerLengthRange', 'FittedCuboid', 'FittedPrimitive', 'FrameRegistration', 'Grasp', 'GraspHolding', 'GraspOptimum', 'GraspRating', 'GraspReport', 'GraspSuccess', 'GraspSynthesis', 'GraspWidth', 'Graspability', 'GridDistanceField', 'Gripper', 'GripperActuator', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'HeldLoad', 'HoldingRequirement', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'IntegrationReport', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'KeepOff', 'LineGrasp', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'ManipulationStats', 'Mesh', 'MeshDistanceField', 'MeshSegment', 'MeshSegmentation', 'MinimalGrippersResult', 'MotionResult', 'MotionStats', 'NextView', 'NlpResult', 'NodeLoad', 'NonlinearProblem', 'ObjectPathEvaluator', 'ObjectPathProblem', 'ObjectPathResult', 'ObjectRegions', 'ObjectSegmentation', 'Obstruction', 'OccupancyMap', 'OccupancyReport', 'OperationLoad', 'OperationOverlap', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'PairwiseWeights', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedMesh', 'PlacedPart', 'PlanGrippersResult', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'ProbabilisticSdf', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotMotion', 'RobotSource', 'SampledSuctionGrasps', 'ScrewThread', 'SdfHits', 'SearchTree', 'SegmentFate', 'SegmentRequirement', 'SegmentedObject', 'SegmentedPart', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'Suction', 'SuctionCup', 'SupportedFrame', 'SupportingPlane', 'ToolRegion', 'TourResult', 'Tray', 'Unloading', 'ViewCandidate', 'Voxels', 'WholeBodyProgram', 'WholeBodyTrajectory', 'World', 'assembly_grasps', 'beam_frame', 'cache_folder', 'camera_view_objective', 'centric_grasps', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'copper', 'cover_from_intersections', 'default_grasp_search', 'derivative_free_solver_names', 'drive_arc', 'drive_by_program', 'eigengrasp_hand', 'evaluate_graspability', 'find_package', 'finger_length_range', 'fit_cuboids', 'fit_primitives', 'flat_contact', 'follow_object_path', 'free_gripper', 'grasp_holding', 'grasp_search_names', 'graspability_map', 'hand_masks', 'held_load', 'inscribed_circle', 'jaw_grasps', 'joint_limit_objective', 'joint_velocity', 'line_contact', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimal_grippers', 'minimize_derivative_free', 'next_view', 'nlp_solver_names', 'operation_load', 'operation_overlap', 'optimised_order', 'optimize_grasp', 'paired_order', 'pairwise_weights', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_grippers', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stop_picks', 'plan_stops_exact', 'plan_straight_line', 'planar_facets', 'planner_names', 'platform_velocity', 'population_search_names', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'preferred_grippers', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'rectangular_section', 'register_frame', 'rehearse_operation', 'render_depth', 'resting_poses', 'robust_intersections', 'round_section', 'route_lengths', 'run_policy', 'sample_grasps', 'sample_suction_grasps', 'seal_gap', 'segment_depth_image', 'segment_mesh', 'segment_names', 'segment_objects', 'self_distance_objective', 'shape_diameters', 'share_headings', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'soft_finger_torque', 'solve_nonlinear', 'solve_set_cover', 'suction_share', 'synthesize_grasps', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs', 'write_plan']
+__all__: list[str] = ['AssemblyGrasp', 'AssemblyOperation', 'BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'BeamExtreme', 'BeamFrame', 'BeamMaterial', 'BeamMember', 'BeamSection', 'BeamState', 'BeamSupport', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactArea', 'ContactPairProvenance', 'ContactPatch', 'CuboidFit', 'Cylinder', 'DepthCamera', 'DepthImage', 'DepthNoise', 'DerivativeFreeResult', 'DistanceField', 'DistanceResult', 'DrawnSuccess', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'Facet', 'FeasibleGrasp', 'FingerGrip', 'FingerLengthRange', 'FittedCuboid', 'FittedPrimitive', 'FrameRegistration', 'Grasp', 'GraspHolding', 'GraspOptimum', 'GraspRating', 'GraspReport', 'GraspSuccess', 'GraspSynthesis', 'GraspWidth', 'Graspability', 'GridDistanceField', 'Gripper', 'GripperActuator', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'HeldLoad', 'HoldingRequirement', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'IntegrationReport', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'KeepOff', 'LineGrasp', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'ManipulationStats', 'Mesh', 'MeshDistanceField', 'MeshSegment', 'MeshSegmentation', 'MinimalGrippersResult', 'MotionResult', 'MotionStats', 'NextView', 'NlpResult', 'NodeLoad', 'NonlinearProblem', 'ObjectPathEvaluator', 'ObjectPathProblem', 'ObjectPathResult', 'ObjectRegions', 'ObjectSegmentation', 'Obstruction', 'OccupancyMap', 'OccupancyReport', 'OperationLoad', 'OperationOverlap', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'PairwiseWeights', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedMesh', 'PlacedPart', 'PlanGrippersResult', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'ProbabilisticSdf', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'RefusedGrasp', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotMotion', 'RobotSource', 'SampledSuctionGrasps', 'ScrewThread', 'SdfHits', 'SearchTree', 'SegmentFate', 'SegmentRequirement', 'SegmentedObject', 'SegmentedPart', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'Suction', 'SuctionCup', 'SupportedFrame', 'SupportingPlane', 'ToolRegion', 'TourResult', 'Tray', 'Unloading', 'ViewCandidate', 'Voxels', 'WholeBodyProgram', 'WholeBodyTrajectory', 'World', 'assembly_grasps', 'beam_frame', 'cache_folder', 'camera_view_objective', 'centric_grasps', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'copper', 'cover_from_intersections', 'default_grasp_search', 'derivative_free_solver_names', 'drive_arc', 'drive_by_program', 'eigengrasp_hand', 'evaluate_graspability', 'find_package', 'finger_length_range', 'fit_cuboids', 'fit_primitives', 'flat_contact', 'follow_object_path', 'free_gripper', 'grasp_holding', 'grasp_search_names', 'graspability_map', 'hand_masks', 'held_load', 'inscribed_circle', 'jaw_grasps', 'joint_limit_objective', 'joint_velocity', 'line_contact', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimal_grippers', 'minimize_derivative_free', 'next_view', 'nlp_solver_names', 'operation_load', 'operation_overlap', 'optimised_order', 'optimize_grasp', 'paired_order', 'pairwise_weights', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_grippers', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stop_picks', 'plan_stops_exact', 'plan_straight_line', 'planar_facets', 'planner_names', 'platform_velocity', 'population_search_names', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'preferred_grippers', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'rectangular_section', 'register_frame', 'rehearse_operation', 'render_depth', 'resting_poses', 'robust_intersections', 'round_section', 'route_lengths', 'run_policy', 'sample_grasps', 'sample_suction_grasps', 'seal_gap', 'segment_depth_image', 'segment_mesh', 'segment_names', 'segment_objects', 'self_distance_objective', 'shape_diameters', 'share_headings', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'soft_finger_torque', 'solve_nonlinear', 'solve_set_cover', 'suction_share', 'synthesize_grasps', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs', 'write_plan']
 class Error(Exception):
     """
     Base of all errors of mmgrasp.
@@ -6349,9 +6349,9 @@ class SegmentRequirement:
     
         SegmentRequirement("sleeve", 0.0375, fingers=3, min_finger_length=0.0227)
     """
-    def __init__(self, part: str, opening: float, *, segment: str = '', fingers: int = 2, min_finger_length: float = 0.0, max_finger_length: float | None = None, clearance: float = 0.0) -> None:
+    def __init__(self, part: str, opening: float, *, segment: str = '', fingers: int = 2, min_finger_length: float = 0.0, max_finger_length: float | None = None, clearance: float = 0.0, least_min_opening: float = 0.0) -> None:
         """
-        Part, opening [m], the segment's label, 2 or 3 fingers, limits of their length [m] (None: no upper one), how far each finger opens to let go [m].
+        Part, opening [m], the segment's label, 2 or 3 fingers, limits of their length [m] (None: no upper one), how far each finger opens to let go [m], how far the gripper may close [m].
         """
     def __repr__(self) -> str:
         ...
@@ -6364,6 +6364,11 @@ class SegmentRequirement:
     def fingers(self) -> int:
         """
         2: parallel jaws; 3: centric fingers.
+        """
+    @property
+    def least_min_opening(self) -> float:
+        """
+        The gripper's smallest opening is no less [m]: centric fingers that close farther have pads too narrow to hold it.
         """
     @property
     def max_finger_length(self) -> float | None:
@@ -6415,7 +6420,7 @@ class Gripper:
         """
     def holds(self, requirement: SegmentRequirement) -> bool:
         """
-        Whether it holds a segment: (5.2) of P1 with <= in place of <, to 1e-9 m.
+        Whether it holds a segment: (5.2) of P1 with <= in place of <, to 1e-9 m, and closes no farther than it allows.
         """
     def to_dict(self) -> dict[str, typing.Any]:
         """
@@ -6489,6 +6494,11 @@ class Gripper:
     def palm_height(self) -> float:
         """
         From the mounting face to the palm [m].
+        """
+    @property
+    def palm_radius(self) -> float:
+        """
+        Radius of the palm, a cylinder that covers the fingers while they are open [m].
         """
 class GripperActuator:
     """
@@ -6910,6 +6920,22 @@ class SegmentFate:
         """
         Grasps of it.
         """
+class RefusedGrasp:
+    """
+    A grasp that the rehearsal of its operation refused.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def met(self) -> str:
+        """
+        What it met with the gripper chosen for it then.
+        """
+    @property
+    def requirement(self) -> int:
+        """
+        Its number in the plan.
+        """
 class PlanGrippersResult:
     """
     The grippers of an assembly, and how they were come by.
@@ -6929,7 +6955,7 @@ class PlanGrippersResult:
     @property
     def help(self) -> list[str]:
         """
-        Single changes each of which gives an operation its grasp.
+        Single changes each of which gives an operation its grasp: tried.
         """
     @property
     def holdings(self) -> list[HeldLoad]:
@@ -6937,9 +6963,14 @@ class PlanGrippersResult:
         One per requirement, of those chosen with their gripper's real pads; empty where nothing is asked of holding.
         """
     @property
+    def left_out(self) -> list[RefusedGrasp]:
+        """
+        Grasps that a rehearsal refused, in that order. They were left out of the choice of the sets that followed, with whatever gripper: the last set is the least for the others.
+        """
+    @property
     def met(self) -> list[str]:
         """
-        What each operation's rehearsal met, '' nothing; empty without a set.
+        What each operation's rehearsal with the set met, '' nothing; empty without one.
         """
     @property
     def missing(self) -> list[str]:
@@ -6949,12 +6980,17 @@ class PlanGrippersResult:
     @property
     def outcome(self) -> Outcome:
         """
-        `solved`: each operation has a gripper that was rehearsed, and the set is proven; `infeasible`: an operation has no grasp to try, or its parts stand in each other (missing), or no drive takes it (set); `not_found`: no grasp that was tried goes through an operation, or a rehearsal met something, or a chosen gripper's pads slip; `stopped`; else as the set's.
+        `solved`: each operation has a gripper that was rehearsed, and the set is proven to be the least for the grasps that were not left_out; `infeasible`: an operation has no grasp to try, or its parts stand in each other (missing), or no drive takes it (set); `not_found`: no grasp that was tried goes through an operation, or a rehearsal refuses all of them (pads that slip, too), or refused one of each of max_rehearsals sets; `stopped`; else as the set's.
         """
     @property
     def parts(self) -> dict[str, SegmentedPart]:
         """
         The parts that are moved, by name.
+        """
+    @property
+    def rehearsals(self) -> int:
+        """
+        So many sets were rehearsed.
         """
     @property
     def requirements(self) -> list[SegmentRequirement]:
@@ -6964,7 +7000,7 @@ class PlanGrippersResult:
     @property
     def set(self) -> MinimalGrippersResult | None:
         """
-        The least set; None when something is missing.
+        The least set; None when an operation has no grasp; the last one that was rehearsed where none goes through.
         """
 def _allowed_bodies(robot: Robot, world: World) -> list[tuple[str, str]]:
     ...
@@ -7075,7 +7111,7 @@ def _timing_option_table() -> dict[str, typing.Any]:
     ...
 def _tracking_option_table() -> dict[str, typing.Any]:
     ...
-def assembly_grasps(part: PlacedMesh, segment: MeshSegment, primitive: FittedPrimitive, actuators: collections.abc.Sequence[GripperActuator], *, finger_width: float = 0.015, finger_thickness: float = 0.008, clearance: float = 0.002, shortest_finger: float = 0.01, longest_finger: float = 0.15, opening_margin: float = 0.001, length_margin: float = 0.001, min_contact: float = 0.003, tip_clearance: float = 0.0005, directions: int = 12, max_overlap: float = 0.0005, change_cost: float = 0.0, max_nodes: int = 20000, time_limit: float = 60.0, threads: int = 0) -> list[AssemblyGrasp]:
+def assembly_grasps(part: PlacedMesh, segment: MeshSegment, primitive: FittedPrimitive, actuators: collections.abc.Sequence[GripperActuator], *, finger_width: float = 0.015, finger_thickness: float = 0.008, clearance: float = 0.002, shortest_finger: float = 0.01, longest_finger: float = 0.15, opening_margin: float = 0.001, length_margin: float = 0.001, min_contact: float = 0.003, tip_clearance: float = 0.0005, directions: int = 12, max_overlap: float = 0.0005, change_cost: float = 0.0, max_nodes: int = 20000, time_limit: float = 60.0, max_rehearsals: int = 200, threads: int = 0) -> list[AssemblyGrasp]:
     """
     The grasps that plan_grippers tries of a segment, in the frame of the active subassembly; the palm is as wide as that of the widest gripper that may take it.
     
@@ -7094,6 +7130,7 @@ def assembly_grasps(part: PlacedMesh, segment: MeshSegment, primitive: FittedPri
         change_cost: float = 0.0  # of changing the gripper between two operations
         max_nodes: int = 20000  # of the search for fewest changes
         time_limit: float = 60.0  # the search for the least set ends after this, on the clock [s]
+        max_rehearsals: int = 200  # most sets that are rehearsed, each without what met something
         threads: int = 0  # 0: all
     """
 def beam_frame(pipe: Pipe, inner_diameter: float, material: BeamMaterial) -> BeamFrame:
@@ -7550,9 +7587,9 @@ def plan_drive_by(robot: Robot | CollisionChecker, group: JointGroup | None = No
         constraint_distance: float = 0.15  # pairs of bodies nearer than this are constrained [m]
         refinements: int = 6  # times that collision constraints may be added
     """
-def plan_grippers(operations: collections.abc.Sequence[AssemblyOperation], actuators: collections.abc.Sequence[GripperActuator], *, keep_off: collections.abc.Sequence[KeepOff] = [], holding: HoldingRequirement | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, finger_width: float = 0.015, finger_thickness: float = 0.008, clearance: float = 0.002, shortest_finger: float = 0.01, longest_finger: float = 0.15, opening_margin: float = 0.001, length_margin: float = 0.001, min_contact: float = 0.003, tip_clearance: float = 0.0005, directions: int = 12, max_overlap: float = 0.0005, change_cost: float = 0.0, max_nodes: int = 20000, time_limit: float = 60.0, threads: int = 0) -> PlanGrippersResult:
+def plan_grippers(operations: collections.abc.Sequence[AssemblyOperation], actuators: collections.abc.Sequence[GripperActuator], *, keep_off: collections.abc.Sequence[KeepOff] = [], holding: HoldingRequirement | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, finger_width: float = 0.015, finger_thickness: float = 0.008, clearance: float = 0.002, shortest_finger: float = 0.01, longest_finger: float = 0.15, opening_margin: float = 0.001, length_margin: float = 0.001, min_contact: float = 0.003, tip_clearance: float = 0.0005, directions: int = 12, max_overlap: float = 0.0005, change_cost: float = 0.0, max_nodes: int = 20000, time_limit: float = 60.0, max_rehearsals: int = 200, threads: int = 0) -> PlanGrippersResult:
     """
-    The least set of grippers that puts an assembly together (P1 chapter 5), from meshes and an order: segments, primitives (boxes for two jaws, cylinders for three centric fingers), grasps that meet nothing over the whole operation with some finger length, the least set, and every operation gone through again with the gripper itself by the collision checker. Of several segments and depths that no more grippers could take, the one is taken on which the insertion bears most evenly, then the one held most safely (both with `holding`), then the one touched on most surface.
+    The least set of grippers that puts an assembly together (P1 chapter 5), from meshes and an order: segments, primitives (boxes for two jaws, cylinders for three centric fingers), grasps that meet nothing over the whole operation with some finger length, the least set, and every operation gone through again with the gripper itself by the collision checker; where that meets something, the set is chosen again without the grasp. Of several segments and depths that no more grippers could take, the one is taken on which the insertion bears most evenly, then the one held most safely (both with `holding`), then the one touched on most surface.
     
     Keyword options:
         finger_width: float = 0.015  # across approach and closing direction [m]
@@ -7569,6 +7606,7 @@ def plan_grippers(operations: collections.abc.Sequence[AssemblyOperation], actua
         change_cost: float = 0.0  # of changing the gripper between two operations
         max_nodes: int = 20000  # of the search for fewest changes
         time_limit: float = 60.0  # the search for the least set ends after this, on the clock [s]
+        max_rehearsals: int = 200  # most sets that are rehearsed, each without what met something
         threads: int = 0  # 0: all
     """
 def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None = None, checker: CollisionChecker | None = None, padding: float | mmgrasp.records.WorldPadding | collections.abc.Mapping[str, float | collections.abc.Mapping[str, float]] | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, on_solution: collections.abc.Callable[[Improvement], typing.Any] | None = None, planner: str = 'prm_star_mg', ik_solutions: int = 8, first_grasps: int = 4, straight: bool = True, ik_restarts: int = 30, joint_step: float = 0.02, workspace_step: float = 0.005, joint_weights: numpy.typing.ArrayLike | collections.abc.Mapping[str, float] | None = None, max_length: float = 0.0, time_limit: float = 15.0, seed: int = 1, threads: int = 0, batch: int = 0, lazy_grasps: bool = True, max_vertices: int = 0, shorten: bool = True, refinements: int = 4, vertices: int = 5000, gamma: float = 0.0, neighbours: int = 0, roadmap_seed: int = 1, max_iterations: int = 1000, range: float = 1.5, rrt_gamma: float = 0.0, exploration: float = 0.5, bidirectional: bool = True, informed: bool = True, goal_cost: float = 0.0, keep_trees: bool = False) -> ManipulationResult:

@@ -45,9 +45,7 @@ def _print(plan: GripperPlan, console: Console) -> None:
     result = plan.result
     if not plan.solved or result is None:
         console.print(f"no grippers: {plan.outcome.name.replace('_', ' ')}", style="bold red", markup=False)
-        faults = plan.missing + ([] if result is None else list(result.explanations))
-        faults += [f"{step}: {met}" for step, met in plan.rehearsed.items() if met]
-        for fault in faults:
+        for fault in plan.faults:
             console.print(f"- {fault}", markup=False, soft_wrap=True)
         for change in plan.help:
             console.print(f"  would help: {change}", markup=False, soft_wrap=True)
@@ -62,4 +60,6 @@ def _print(plan: GripperPlan, console: Console) -> None:
             markup=False,
             soft_wrap=True,
         )
-    console.print(f"- {result.changes} changes of the gripper", markup=False)
+    console.print(f"- {plural(result.changes, 'change')} of the gripper", markup=False)
+    for refused in plan.refused_in_rehearsal:
+        console.print(f"- left out, refused in rehearsal: {refused}", markup=False, soft_wrap=True)

@@ -28,7 +28,7 @@ LOAD_DEFAULTS = HoldingRequirement(FingerGrip())
 SHORTEST_LINE = 5e-7  # that an insertion may end with [m]
 SEGMENT_KINDS = ("cylinder", "box", "cone", "sphere")
 SEGMENT_NAME = re.compile(rf"(?:{'|'.join(SEGMENT_KINDS)})_[1-9]\d{{0,5}}")
-SET_OPTIONS = ("change_cost", "time_limit", "max_nodes", "max_overlap")
+SET_OPTIONS = ("change_cost", "time_limit", "max_nodes", "max_overlap", "max_rehearsals")
 
 
 @dataclass
@@ -155,13 +155,14 @@ def _read_assembly(root: Node, source: str) -> Assembly:
     for node in root["parts"].elements() if holding is not None else []:
         if not parts[node["name"].raw].mesh.closed:
             node.fail("must be a closed mesh for its weight to be known (holding)")
+    steps = _read_order(root["order"], parts, scale)
     return Assembly(
         root["name"].label(),
         source,
         parts,
-        _read_order(root["order"], parts, scale),
+        steps,
         [_read_actuator(node, scale) for node in _filled(root["actuators"])],
-        _read_fingers(root, scale),
+        _read_fingers(root, scale, max(_size(parts[name].mesh) for step in steps for name in step.active)),
         _read_options(root, scale),
         unit,
         holding,
@@ -197,8 +198,7 @@ def _read_part(node: Node, scale: float, unit: str) -> AssemblyPart:
     else:
         sizes = node["box"].numbers(3, above=0)
         mesh = block(np.array(sizes) * scale)
-    vertices = np.asarray(mesh.vertices)
-    size = float(np.linalg.norm(vertices.max(axis=0) - vertices.min(axis=0)))
+    size = _size(mesh)
     if rule := wrong_size(size, unit):
         node[kinds[0]].fail(f"is {size:.4g} m from corner to corner with unit: {unit}; {rule}")
     if len(mesh.triangles) > MOST_TRIANGLES:
@@ -212,6 +212,12 @@ def _read_part(node: Node, scale: float, unit: str) -> AssemblyPart:
     pose = _pose(node["pose"], scale) if "pose" in node else np.eye(4)
     inside_out = bool(source) and _core._file_is_inside_out(source)
     return AssemblyPart(name, mesh, pose, keep_off, source, inside_out)
+
+
+def _size(mesh: Mesh) -> float:
+    """From corner to corner [m]."""
+    vertices = np.asarray(mesh.vertices)
+    return float(np.linalg.norm(vertices.max(axis=0) - vertices.min(axis=0)))
 
 
 def _read_keep_off(part: str, node: Node, scale: float) -> KeepOff:
@@ -364,7 +370,8 @@ def _read_actuator(node: Node, scale: float) -> GripperActuator:
     return GripperActuator(node["name"].label(), stroke, fingers=fingers, max_opening=widest, cost=cost)
 
 
-def _read_fingers(root: Node, scale: float) -> FingerChoice:
+def _read_fingers(root: Node, scale: float, largest_part: float) -> FingerChoice:
+    """Fingers for moved parts of up to this size [m]."""
     choice = FingerChoice()
     if "fingers" not in root:
         return choice
@@ -380,6 +387,9 @@ def _read_fingers(root: Node, scale: float) -> FingerChoice:
             setattr(choice, key, value.number(least=0) * scale)
         else:
             setattr(choice, key, value.number(above=0) * scale)
+    if choice.tip_clearance > largest_part:
+        rule = "must be no longer than the largest part that is moved"
+        node["tip_clearance"].fail(f"{rule}, {largest_part / scale:.4g} from corner to corner")
     if choice.longest < choice.shortest:
         node.fail(f"longest = {choice.longest / scale:g} must be at least shortest = {choice.shortest / scale:g}")
     return choice
@@ -391,7 +401,7 @@ def _read_options(root: Node, scale: float) -> dict[str, Any]:
     node = root["options"].mapping("", " ".join(SET_OPTIONS))
     out: dict[str, Any] = {}
     for key, value in node.items():
-        if key == "max_nodes":
+        if key in ("max_nodes", "max_rehearsals"):
             out[key] = value.integer(least=1)
         else:
             out[key] = value.number(least=0) * (scale if key == "max_overlap" else 1.0)

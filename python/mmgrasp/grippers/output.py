@@ -36,6 +36,8 @@ def result_to_dict(plan: GripperPlan) -> dict[str, Any]:
         "missing": plan.missing,
         "help": plan.help,
         "notes": plan.notes,
+        "left_out": [{"requirement": r.requirement, "met": r.met} for r in plan.left_out],
+        "rehearsals": plan.rehearsals,
         "grippers": [],
         "operations": [],
         "segments": [
@@ -89,6 +91,7 @@ def _requirement(requirement: SegmentRequirement, grasp: AssemblyGrasp) -> dict[
         "min_finger_length": requirement.min_finger_length,
         "max_finger_length": requirement.max_finger_length,
         "clearance": requirement.clearance,
+        "least_min_opening": requirement.least_min_opening,
         "T_assembly_tips": np.asarray(grasp.T_active_tool).tolist(),
     }
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -20,6 +21,7 @@ from .._core import (
     MinimalGrippersResult,
     Outcome,
     PlacedMesh,
+    RefusedGrasp,
     SegmentFate,
     SegmentRequirement,
 )
@@ -51,6 +53,10 @@ class GripperPlan:
     """For each operation what the chosen gripper met when the operation was gone through again by the collision checker; '' nothing."""
     holdings: list[HeldLoad | None] = field(default_factory=list)
     """One per requirement; None where the assembly says nothing of weight and insertion."""
+    left_out: list[RefusedGrasp] = field(default_factory=list)
+    """Grasps that a rehearsal refused: the set is the least for the others."""
+    rehearsals: int = 0
+    """So many sets were rehearsed."""
 
     @property
     def segment_names(self) -> dict[str, list[str]]:
@@ -59,7 +65,7 @@ class GripperPlan:
 
     @property
     def notes(self) -> list[str]:
-        """What is wrong with the parts' meshes, what was mended, and parts that are in nobody's way."""
+        """What is wrong with the parts' meshes, what was mended, parts that are in nobody's way, and parts without a way."""
         out = []
         met = {name for step in self.assembly.steps for name in step.active + step.passive}
         for name, part in self.assembly.parts.items():
@@ -69,7 +75,24 @@ class GripperPlan:
                 out.append(f"{name}: the mesh was inside out: its faces were turned")
             if name not in met:
                 out.append(f"{name}: no operation moves it, and none has it in onto: it is in nobody's way")
+        for step in self.assembly.steps:
+            if len(step.path) == 1 and step.passive:
+                stays = ", ".join(step.passive)
+                out.append(
+                    f"{step.name}: has neither from nor path: how it comes to its place past {stays} is not looked at"
+                )
         return out
+
+    @property
+    def refused_in_rehearsal(self) -> list[str]:
+        """What the grasps met that rehearsals refused, by operation, with how many met it."""
+        counts = Counter((self.requirements[r.requirement].part, r.met) for r in self.left_out)
+        return [f"{step}: {met}" + (f" ({n} times)" if n > 1 else "") for (step, met), n in counts.items()]
+
+    @property
+    def faults(self) -> list[str]:
+        """Why there are no grippers, each reason once."""
+        return self.missing + ([] if self.result is None else self.result.explanations) or self.refused_in_rehearsal
 
     @property
     def solved(self) -> bool:
@@ -155,4 +178,6 @@ def plan_grippers(assembly: Assembly, *, progress: Progress = None) -> GripperPl
         found.help,
         dict(zip(names, found.met, strict=True)) if found.met else {},
         list(found.holdings) or [None] * len(found.requirements),
+        found.left_out,
+        found.rehearsals,
     )

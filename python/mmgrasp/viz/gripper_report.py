@@ -40,13 +40,14 @@ def _millimetres(length: float) -> str:
 
 
 def proof(plan: GripperPlan) -> str:
-    """What is proven of the number of grippers, in a few words."""
+    """What is proven of the number of grippers, and for which grasps, in a few words."""
     result = plan.result
     if result is None or not result.grippers:
         return "no set of grippers"
     if result.lower_bound >= result.cost * (1 - 1e-9):
         changes = "" if result.changes_bound < result.changes else ", nor fewer changes"
-        return f"proven: no set of grippers costs less{changes}"
+        left = "" if not plan.left_out else ", for the grasps that rehearsals did not refuse"
+        return f"proven: no set of grippers costs less{changes}{left}"
     return f"not proven: a set might cost {result.lower_bound:g}"
 
 
@@ -68,20 +69,21 @@ def _headline(plan: GripperPlan) -> str:
 
 
 def _obstacles(plan: GripperPlan) -> str:
-    faults = list(plan.missing)
-    if plan.result is not None:
-        faults += plan.result.explanations
-    faults += [f"{step}: {met}" for step, met in plan.rehearsed.items() if met]
-    faults += [f"Would help: {change}" for change in plan.help]
+    if plan.solved:
+        return ""
+    faults = plan.faults + [f"Would help: {change}" for change in plan.help]
     if not faults:
         return ""
     return "<h2>What stands in the way</h2>" + "".join(f'<div class="bad">{escape(f)}</div>' for f in faults)
 
 
 def _notes(plan: GripperPlan) -> str:
-    if not plan.notes:
+    notes = list(plan.notes)
+    if plan.solved:
+        notes += [f"left out, refused in rehearsal: {refused}" for refused in plan.refused_in_rehearsal]
+    if not notes:
         return ""
-    return "<h2>To look at</h2><ul>" + "".join(f"<li>{escape(note)}</li>" for note in plan.notes) + "</ul>"
+    return "<h2>To look at</h2><ul>" + "".join(f"<li>{escape(note)}</li>" for note in notes) + "</ul>"
 
 
 def _grippers(plan: GripperPlan) -> str:

@@ -104,12 +104,16 @@ TEST(PlanGrippers, WhatWouldHelpHelps) {
   found = plan_grippers(ring_on_peg(), {{"jaws", 2, 0.02}});
   ASSERT_EQ(found.outcome, Outcome::infeasible);
   EXPECT_NE(found.missing[0].find("no actuator has 3 fingers"), std::string::npos) << found.missing[0];
-  ASSERT_EQ(found.help.size(), 1u);
-  EXPECT_EQ(found.help[0].substr(0, 42), "ring: a drive with 3 fingers, a stroke of ");
+  ASSERT_EQ(found.help.size(), 2u);
+  EXPECT_EQ(found.help[0], "ring: a drive with 3 fingers, a stroke of 5 mm and an opening of up to 24 mm would do");
+  EXPECT_EQ(found.help[1],
+            "ring: a drive with 3 fingers, a stroke of 2 mm and an opening of up to 21 mm would do, the least: its "
+            "fingers open by 0.5 mm, not by 2 mm");
   const double opening = std::stod(found.help[0].substr(found.help[0].find("up to ") + 6)) / 1000;
   EXPECT_NEAR(opening, 0.024, 1e-4);  // 20 mm, and 2 mm for each finger to let go
   EXPECT_EQ(plan_grippers(ring_on_peg(), {{"jaws", 2, 0.02}, {"c", 3, 0.006, opening}}).outcome, Outcome::solved);
   EXPECT_EQ(plan_grippers(ring_on_peg(), {{"c", 3, 0.006, opening - 0.0002}}).outcome, Outcome::infeasible);
+  EXPECT_EQ(plan_grippers(ring_on_peg(), {{"c", 3, 0.002, 0.021}}).outcome, Outcome::solved);
 }
 
 TEST(PlanGrippers, FingersKeepOffSegmentsAndBoxes) {
@@ -324,6 +328,24 @@ TEST(PlanGrippers, HoldingIsThatOfThePadsThatExist) {
   EXPECT_NEAR(firm.set->grippers[0].min_opening, 0.008, 1e-5);
   EXPECT_GE(firm.holdings[firm.set->requirement_of_part[0]].safety, options.holding->least_safety);
   expect_true(firm);
+}
+
+TEST(PlanGrippers, PadsTooNarrowInASharedGripperAskForAnotherOne) {
+  std::vector<AssemblyOperation> order{ring_on_plate("pin", 0.003, 0.012), ring_on_plate("bead", 0.009, 0.012)};
+  order[1].insertion_force = 20;
+  order[1].hole = Eigen::Vector3d(0.004, 0, 0);
+  PlanGrippersOptions options;
+  options.holding.emplace();
+  options.holding->least_safety = 0;
+  const PlanGrippersResult shared = plan_grippers(order, kChuck, {}, options);
+  ASSERT_EQ(shared.outcome, Outcome::solved);
+  ASSERT_EQ(shared.set->grippers.size(), 1u);
+  options.holding->least_safety = 1.01 * shared.holdings[shared.set->requirement_of_part[1]].safety;
+  const PlanGrippersResult apart = plan_grippers(order, kChuck, {}, options);
+  ASSERT_EQ(apart.outcome, Outcome::solved);
+  EXPECT_EQ(apart.set->grippers.size(), 2u);
+  EXPECT_TRUE(apart.left_out.empty());
+  EXPECT_GE(apart.holdings[apart.set->requirement_of_part[1]].safety, options.holding->least_safety);
 }
 
 TEST(PlanGrippers, ARehearsalThatWasStoppedHasMetNothingYet) {

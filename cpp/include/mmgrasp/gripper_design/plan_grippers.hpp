@@ -26,7 +26,8 @@ struct MMGRASP_EXPORT PlanGrippersOptions {
   double opening_margin = 0.001;    ///< Stroke kept free beyond the part at either end [m], >= 0.
   double length_margin = 0.001;     ///< Kept from either limit of the finger length [m], >= 0.
   double min_contact = 0.003;       ///< Pads overlap a segment by at least this, along the approach [m], > 0.
-  /// Tips end this short of the far end of the segment they hold, as far as min_contact lets them [m], >= 0.
+  /// Tips end this short of the far end of the segment they hold, as far as min_contact lets them [m]; >= 0, no more
+  /// than the largest part that is moved.
   double tip_clearance = 0.0005;
   int directions = 12;  ///< Approaches about the closing axis, or turns of centric fingers; in [1, 360].
   /// Parts that stand in each other deeper than this, at the end of an operation or on the way, are an error of the
@@ -35,6 +36,7 @@ struct MMGRASP_EXPORT PlanGrippersOptions {
   double change_cost = 0;                     ///< Cost of changing the gripper between two operations, >= 0.
   int max_nodes = 20000;                      ///< Most nodes of the search for fewest changes, > 0.
   double time_limit = 60;                     ///< The search for the least set ends after this, on the clock [s], > 0.
+  int max_rehearsals = 200;                   ///< Most sets that are rehearsed, each without what met something, > 0.
   int threads = 0;                            ///< 0: all.
   std::optional<HoldingRequirement> holding;  ///< None: weight and insertion are not looked at.
   void check() const;                         ///< Throws InvalidInput naming field, value and rule.
@@ -60,12 +62,19 @@ struct MMGRASP_EXPORT SegmentFate {
   std::vector<int> requirements;  ///< Numbers of the plan's requirements.
 };
 
+/// A grasp that the rehearsal of its operation refused.
+struct MMGRASP_EXPORT RefusedGrasp {
+  int requirement = -1;  ///< Its number in the plan.
+  std::string met;       ///< What it met with the gripper chosen for it then.
+};
+
 /// The grippers of an assembly, and how they were come by.
 struct MMGRASP_EXPORT PlanGrippersResult {
-  /// `solved`: each operation has a gripper that was rehearsed, and the set is proven; `infeasible`: an operation has
-  /// no grasp to try, or its parts stand in each other (see `missing`), or no drive takes it (see `set`); `not_found`:
-  /// no grasp that was tried goes through an operation, or a rehearsal met something, or a chosen gripper's pads slip;
-  /// `stopped`; else as `set`.
+  /// `solved`: each operation has a gripper that was rehearsed, and the set is proven to be the least for the grasps
+  /// that were not `left_out`; `infeasible`: an operation has no grasp to try, or its parts stand in each other (see
+  /// `missing`), or no drive takes it (see `set`); `not_found`: no grasp that was tried goes through an operation, or a
+  /// rehearsal refuses all of them (pads that slip, too), or refused one of each of `max_rehearsals` sets; `stopped`;
+  /// else as `set`.
   Outcome outcome = Outcome::stopped;
   std::map<std::string, SegmentedPart> parts;    ///< The parts that are moved, by name.
   std::vector<SegmentFate> fates;                ///< Every segment of what is moved, in every operation.
@@ -74,10 +83,15 @@ struct MMGRASP_EXPORT PlanGrippersResult {
   /// One per requirement, with pads as wide as fingers may be, of those that were chosen as wide as their gripper's;
   /// empty where nothing is asked of holding.
   std::vector<HeldLoad> holdings;
-  std::vector<std::string> missing;          ///< Operations that cannot be done, each with the reasons.
-  std::vector<std::string> help;             ///< Single changes each of which gives an operation its grasp.
-  std::optional<MinimalGrippersResult> set;  ///< The least set; none when something is missing.
-  std::vector<std::string> met;              ///< What each operation's rehearsal met; empty: nothing, or no set.
+  std::vector<std::string> missing;  ///< Operations that cannot be done, each with the reasons.
+  std::vector<std::string> help;     ///< Single changes each of which gives an operation its grasp: tried.
+  /// The least set; none when an operation has no grasp; the last one that was rehearsed where none goes through.
+  std::optional<MinimalGrippersResult> set;
+  std::vector<std::string> met;  ///< What each operation's rehearsal with `set` met; empty: nothing, or no set.
+  /// Grasps that a rehearsal refused, in that order. They were left out of the choice of the sets that followed, with
+  /// whatever gripper: the last set is the least for the others.
+  std::vector<RefusedGrasp> left_out;
+  int rehearsals = 0;  ///< So many sets were rehearsed.
 };
 
 /// The least set of grippers that puts an assembly together (P1 chapter 5), from meshes and an order.
@@ -88,10 +102,11 @@ struct MMGRASP_EXPORT PlanGrippersResult {
 /// Each part that is moved is cut into segments, each segment is given its primitive (boxes are for two jaws, cylinders
 /// for three centric fingers, 5.2.1), and each grasp of it the finger lengths with which nothing is met over the whole
 /// operation (5.3). Then the least set is chosen (5.3.4), and every operation is gone through again with the gripper
-/// itself, by the collision checker. Of several segments and depths that no more grippers could take, the one is taken
-/// on which the insertion bears most evenly, then the one held most safely, then the one touched on most surface.
-/// Throws InvalidInput for wrong operations (names must differ, no part is moved twice), actuators, surface to keep off
-/// or options; what cannot be held is an answer.
+/// itself, by the collision checker; where that meets something, the set is chosen again without the grasp. Of several
+/// segments and depths that no more grippers could take, the one is taken on which the insertion bears most evenly,
+/// then the one held most safely, then the one touched on most surface. Throws InvalidInput for wrong operations (names
+/// must differ, no part is moved twice), actuators, surface to keep off or options (tips that end farther from the end
+/// of a part than any is large); what cannot be held is an answer.
 MMGRASP_EXPORT PlanGrippersResult plan_grippers(const std::vector<AssemblyOperation>& operations,
                                                 const std::vector<GripperActuator>& actuators,
                                                 const std::vector<KeepOff>& keep_off = {},

@@ -19,6 +19,9 @@ struct MMGRASP_EXPORT SegmentRequirement {
   double max_finger_length = std::numeric_limits<double>::infinity();  ///< [m], >= min_finger_length.
   /// How far each finger opens to let go of it [m], >= 0: minimal_grippers() keeps twice this free above `opening`.
   double clearance = 0;
+  /// The gripper's smallest opening is no less [m], in [0, opening]: centric fingers that close farther have pads too
+  /// narrow to hold it.
+  double least_min_opening = 0;
 
   void check() const;        ///< Throws InvalidInput naming part, segment, field, value and rule.
   std::string name() const;  ///< "part" or "part, segment".

@@ -10,6 +10,7 @@
 #include "grasp/assembly/pad_contact.hpp"
 #include "grasp/assembly/shadow_grid.hpp"
 #include "mmgrasp/core/detail/interruption.hpp"
+#include "mmgrasp/core/detail/lengths.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/limits.hpp"
@@ -142,7 +143,7 @@ std::vector<double> depths(double extent, const AssemblyGraspOptions& options) {
   const double most = std::max(extent - options.tip_clearance, std::min(extent, options.min_contact));
   for (const double wanted : {options.min_contact, options.pad_length / 2, options.pad_length}) {
     const double depth = std::min(wanted, most);
-    if (depth >= options.min_contact - 1e-9 && (out.empty() || depth > out.back() + 1e-6)) out.push_back(depth);
+    if (detail::at_most(options.min_contact, depth) && (out.empty() || depth > out.back() + 1e-6)) out.push_back(depth);
   }
   return out;
 }
@@ -165,7 +166,7 @@ void add_pair(const TriangleMesh& mesh, const std::vector<int>& faces, const Fac
   const Eigen::Matrix3d axes = plane_axes((a.normal - b.normal).normalized());
   const Eigen::Vector3d normal = axes.col(2);
   const double opening = normal.dot(a.centre - b.centre);
-  if (opening <= 1e-4 || opening > options.max_opening) return;
+  if (opening <= 1e-4 || !detail::at_most(opening, options.max_opening)) return;
   const std::vector<Polygon> overlap = overlap_of(shadow(mesh, a, axes), shadow(mesh, b, axes));
   const std::optional<Eigen::Vector2d> middle = centre_of(overlap);
   if (!middle) return;
@@ -199,7 +200,7 @@ void add_pair(const TriangleMesh& mesh, const std::vector<int>& faces, const Fac
       grasp.contact_length = depth;
       grasp.contact_width = area / depth;
       detail::stand_on_facets(mesh, first, second, grasp);
-      if (grasp.opening <= options.max_opening) out.push_back(grasp);
+      if (detail::at_most(grasp.opening, options.max_opening)) out.push_back(grasp);
     }
   }
 }
@@ -292,7 +293,7 @@ std::vector<AssemblyGrasp> centric_grasps(const CylinderFit& cylinder, const Ass
   require(std::isfinite(cylinder.high - cylinder.low) && cylinder.high > cylinder.low, "high", cylinder.high,
           "must be above low = " + std::to_string(cylinder.low) + " [m]");
   std::vector<AssemblyGrasp> out;
-  if (cylinder.diameter > options.max_opening) return out;
+  if (!detail::at_most(cylinder.diameter, options.max_opening)) return out;
   for (const bool from_high : {true, false}) {
     for (const double depth : depths(cylinder.high - cylinder.low, options)) {
       for (int i = 0; i < options.directions; ++i) {
@@ -321,7 +322,7 @@ std::vector<AssemblyGrasp> centric_grasps(const TriangleMesh& mesh, const std::v
   const std::vector<int> beyond = detail::faces_beyond(mesh, segment, cylinder);
   for (AssemblyGrasp& grasp : out)
     detail::stand_on_wall(mesh, beyond, std::min(rough, options.parallel_angle * grasp.contact_length), grasp);
-  const auto too_wide = [&](const AssemblyGrasp& g) { return g.opening > options.max_opening; };
+  const auto too_wide = [&](const AssemblyGrasp& g) { return !detail::at_most(g.opening, options.max_opening); };
   out.erase(std::remove_if(out.begin(), out.end(), too_wide), out.end());
   return out;
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <regex>
@@ -397,6 +398,22 @@ TEST(DriveBy, RefusesWhatMakesNoSense) {
   DriveByOptions few;
   few.waypoints = 3;
   EXPECT_THROW(plan(kStart, tasks, {kGoal, kGoal}, few), InvalidInput);
+}
+
+TEST(DriveBy, IsHeardWhileItSolves) {
+  const JointGroup group = test::fetchlike_whole_body();
+  std::vector<double> heard;
+  Monitor monitor;
+  monitor.progress = [&](const std::string&, double fraction) { heard.push_back(fraction); };
+  DriveByOptions options;
+  options.waypoints = 45;
+  options.collisions = false;
+  const std::vector<DriveByTask> tasks{grasp_at(pose_from_xyz_rpy({5, -1, 0.75}, {0, 0, -0.8}))};
+  const DriveByResult r = plan_drive_by(group, World(), kStart, tasks, {kGoal, kGoal}, options, monitor);
+  ASSERT_EQ(r.outcome, Outcome::solved) << r.report;
+  EXPECT_GE(static_cast<int>(heard.size()), r.iterations) << "once an iteration";
+  EXPECT_TRUE(std::is_sorted(heard.begin(), heard.end()));
+  EXPECT_LE(heard.back(), 1);
 }
 
 TEST(DriveBy, EndsWhenTold) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <exception>
 
@@ -39,6 +40,10 @@ class SolveClock {
   bool stopped() const { return monitor_.stopped(); }
   bool late() const { return seconds() > limit_; }
   bool over() const { return stopped() || late() || error; }
+  /// How far the iterations that are allowed have come.
+  void report(int iteration, int most) const {
+    monitor_.report("iterations", std::min(1.0, static_cast<double>(iteration) / std::max(1, most)));
+  }
   /// Calls back unless the solve is over; false when it is, or when the callback throws, which ends the solve.
   template <typename Function>
   bool guarded(Function&& function) {

@@ -107,6 +107,7 @@ class Adapter : public Ipopt::TNLP {
                              Ipopt::IpoptCalculatedQuantities* quantities) override {
     iterations = iteration;
     if (mode == Ipopt::RegularMode) keep(objective, violation, data, quantities);
+    clock_.report(iteration, options_.max_iterations);
     return !clock_.over();
   }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "mmgrasp/core/detail/monitor_part.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/limits.hpp"
@@ -49,14 +50,15 @@ class DriveBy {
         steps_(detail::steps_of(tasks)),
         goal_(goal),
         options_(options),
-        monitor_(monitor) {
+        monitor_(monitor),
+        part_{monitor.stop, {}} {
     for (int i = 0; i < group.size(); ++i) {
       if (!group.wraps()[i]) continue;
       if (goal_.lower[i] != goal_.upper[i]) continue;
       goal_.lower[i] = goal_.upper[i] = start[i] + wrap_angle(goal_.lower[i] - start[i]);
     }
     if (options.collisions) scene_states_.emplace(group_, world, steps_, prepared);
-    solver_.emplace(group_, start_, steps_, goal_, options_, scene_states_ ? &*scene_states_ : nullptr, monitor_);
+    solver_.emplace(group_, start_, steps_, goal_, options_, scene_states_ ? &*scene_states_ : nullptr, part_);
   }
 
   DriveByResult run() {
@@ -80,8 +82,9 @@ class DriveBy {
             "candidates " + name(assignment) + ": left out, not below " + detail::number(assignment.bound) + " s\n";
         continue;
       }
-      monitor_.report("grasp_assignments",
-                      static_cast<double>(result.grasp_assignments) / static_cast<double>(assignments.size()));
+      const double share = 1.0 / static_cast<double>(assignments.size()), done = result.grasp_assignments * share;
+      part_ = detail::monitor_part(monitor_, "grasp_assignments", done, done + share);
+      part_.report("", 0);
       solve_all(assignment, result);
       if (++result.grasp_assignments == options_.grasp_assignments) break;
     }
@@ -198,6 +201,7 @@ class DriveBy {
   DriveByGoal goal_;
   const DriveByOptions& options_;
   const Monitor& monitor_;
+  Monitor part_;  // Heard by the solver: that of the candidates it works on.
   std::optional<detail::SceneStates> scene_states_;
   std::optional<detail::DriveBySolver> solver_;
   double least_broken_ = detail::kInfinity;

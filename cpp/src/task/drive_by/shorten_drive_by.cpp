@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mmgrasp/core/detail/monitor_part.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/detail/stopwatch.hpp"
 #include "mmgrasp/core/error.hpp"
@@ -96,7 +97,8 @@ DriveByResult shorten_drive_by(const JointGroup& group, const World& world, cons
   detail::SeededProblem a = seeds.make(sequence, options.waypoints);
   a.problem.check();
   a.guess = guess_along(known, tasks, a.intervals);
-  monitor.report("shortening", 0);
+  const Monitor part = detail::monitor_part(monitor, "shortening", 0, 1);
+  part.report("", 0);
   DriveByResult result;
   result.grasp_assignments = 1;
   WholeBodyResult r;
@@ -104,7 +106,7 @@ DriveByResult shorten_drive_by(const JointGroup& group, const World& world, cons
   // is elsewhere at the same waypoint.
   for (const bool keeps_sides : {false, true}) {
     a.guess.keeps_sides = keeps_sides;
-    r = optimize_whole_body(a.problem, a.guess, options.trajectory, a.checkers, monitor);
+    r = optimize_whole_body(a.problem, a.guess, options.trajectory, a.checkers, part);
     ++result.solves;
     result.iterations += r.iterations;
     result.report += "from a known motion: " + detail::describe(r) +

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple, ParamSpec, TypeVar
 import numpy as np
 
 from . import _core
+from ._progress import heard
 from .documents.reading import near_miss
 
 P = ParamSpec("P")
@@ -159,14 +160,16 @@ def checked(function: Callable[P, R]) -> Callable[P, R]:
     @functools.wraps(function)
     def call(*args: P.args, **kwargs: P.kwargs) -> R:
         try:
-            given = signature.bind(*args, **kwargs).arguments
+            bound = signature.bind(*args, **kwargs)
         except TypeError:
             return function(*args, **kwargs)  # which says what is missing or unknown
-        for name, value in given.items():
+        for name, value in bound.arguments.items():
             parameter = signature.parameters[name]
             if parameter.kind not in (parameter.VAR_KEYWORD, parameter.VAR_POSITIONAL) and parameter.annotation:
                 _require(name, str(parameter.annotation), value, space)
-        return function(*args, **kwargs)
+            if parameter.annotation == "Progress":
+                bound.arguments[name] = heard(value)
+        return function(*bound.args, **bound.kwargs)
 
     return call
 

@@ -13,7 +13,7 @@ import struct
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import mmgrasp as mg
@@ -27,7 +27,7 @@ MEMORY = 100_000_000  # [bytes] beyond what the loaded libraries take; the files
 TOO_LONG = 2.0  # [s] of processor time for one file
 
 
-def joined(rows: list[tuple[float, ...]] | list[tuple[int, ...]]) -> str:
+def joined(rows: Sequence[tuple[float, ...]]) -> str:
     return " ".join(str(number) for row in rows for number in row)
 
 

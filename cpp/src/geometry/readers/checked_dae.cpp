@@ -312,7 +312,7 @@ class DaeCheck {
   std::map<std::string_view, std::size_t> arrays_;  ///< Numbers of each <float_array>.
   std::map<std::string_view, DaeAccessor> accessors_;
   std::string_view source_, vertex_id_, primitive_;
-  std::size_t primitives_ = 0, found_ = 0;  ///< By `count`, and in <p>.
+  std::size_t primitives_ = 0, found_ = 0;  ///< Said by `count`, and held by <p>.
   std::optional<std::size_t> corners_;      ///< Sum of <vcount>.
   std::vector<DaeInput> vertex_inputs_, inputs_;
   DaeInstances instances_;

@@ -243,7 +243,7 @@ def _misfit_one(annotation: str, value: Any, space: dict[str, Any]) -> _Misfit |
 
 def _fits(kind: str, value: Any, space: dict[str, Any]) -> bool:
     """Whether a value is of a plain kind; kinds that are not known here fit."""
-    is_bound = space is _BOUND  # pybind11 takes bytes for texts, and booleans for numbers
+    is_bound = space is _BOUND  # pybind11 takes booleans for numbers
     if kind in ("float", "int"):
         methods = ("__index__",) if kind == "int" else ("__float__", "__index__")
         return any(hasattr(value, method) for method in methods) and (is_bound or not isinstance(value, bool))
@@ -252,8 +252,6 @@ def _fits(kind: str, value: Any, space: dict[str, Any]) -> bool:
     if kind == "None":
         return value is None
     found: Any = _KINDS.get(kind)
-    if kind == "str" and is_bound:
-        found = (str, bytes)
     if found is None and kind not in _ARRAYS:
         first, *path = kind.split(".")
         found = space.get(first)

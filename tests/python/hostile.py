@@ -46,7 +46,7 @@ PARTS = {
     "frames": Part("frames and maps of surfaces", "frames_fuzz map_file_fuzz scan_refusals"),
     "readers": Part("files of robots, meshes, clouds and trees", "module_files mesh_fuzz", ("./dev fuzz 600", "mesh_fuzz.py")),
     "calls": Part("every call, array and number of the stubs",
-                  "bad_arguments argument_errors python_arguments odd_objects numbers number_walk", ("number_walk.py",)),
+                  "bad_arguments argument_errors python_arguments odd_objects numbers number_walk texts", ("number_walk.py",)),
     "limits": Part("limits, threads, memory, forks", "limits interpreter threads forks small_processes pickling"),
     "command": Part("options and streams of the command", "cli_doors cli_options command_fuzz", ("command_fuzz.py 400",)),
     "places": Part("places that are written", "output_places output_folder output_commands killed_runs saved_again", ("killed_runs.py 60",)),

@@ -109,11 +109,22 @@ def damaged(content: bytes) -> Iterator[bytes]:
             yield before + piece + content[at:]
 
 
+URDF = """<robot name="r"><link name="a"/><link name="b"><collision><geometry><mesh filename="{}"/></geometry></collision></link>
+<joint name="j" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/>
+<limit lower="-1" upper="1" velocity="1" effort="1"/></joint></robot>"""
+
+
+def read_twice(path: Path) -> None:
+    """By our readers, and what they take by assimp, as `verify` reads it."""
+    mg.Mesh.load(path)
+    mg.verify.check_path(mg.Robot.from_strings(URDF.format(path)), ["j"], [[0.0], [0.1]], [])
+
+
 def what_came(path: Path) -> str:
     """How reading ended: "read", "refused", or what to complain of."""
     begun = time.process_time()
     try:
-        mg.Mesh.load(path)
+        read_twice(path)
         ended = "read"
     except mg.Error as error:
         words = str(error)

@@ -124,3 +124,11 @@ def test_a_corner_far_beyond_is_not_taken_for_another(tmp_path: Path) -> None:
     path.write_bytes(FILES["obj"].replace(b"f 1 2/", b"f 4294967297 2/", 1))
     with pytest.raises(mg.IoError, match="4294967297"):
         mg.Mesh.load(path)
+
+
+def test_faces_without_corners_are_refused(tmp_path: Path) -> None:
+    """Assimp, with which `verify` reads meshes again, ends the process at one."""
+    path = tmp_path / "m.ply"
+    path.write_bytes(FILES["ply"].replace(b"\n3 0 1 3\n", b"\n0\n", 1))
+    with pytest.raises(mg.IoError, match="a face has 0 corners"):
+        mg.Mesh.load(path)

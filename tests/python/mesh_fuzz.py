@@ -115,7 +115,7 @@ URDF = """<robot name="r"><link name="a"/><link name="b"><collision><geometry><m
 
 
 def read_twice(path: Path) -> None:
-    """By our readers, and what they take by assimp, as `verify` reads it."""
+    """Our readers read it, and assimp what they take, as `verify` does."""
     mg.Mesh.load(path)
     mg.verify.check_path(mg.Robot.from_strings(URDF.format(path)), ["j"], [[0.0], [0.1]], [])
 

@@ -24,7 +24,9 @@ def restored(kind: type, state: tuple[Any, ...]) -> Any:
 
 
 def refuse(thing: object) -> None:
-    """Raises TypeError for an object of a class of the C++ module, or of one that derives from it."""
+    """Raises TypeError for an object of a class of the C++ module, or of one that derives from it and has no __reduce__."""
+    if type(thing).__reduce__ is not object.__reduce__:
+        return
     for kind in type(thing).__mro__:
         if kind.__module__.startswith("mmgrasp."):
             of = kind.__name__ if kind is type(thing) else f"{type(thing).__name__}, derived from {kind.__name__},"

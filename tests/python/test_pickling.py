@@ -170,6 +170,17 @@ def test_classes_that_derive_from_ours_are_refused() -> None:
         pickle.dumps(Named([1, 1, 1]))
 
 
+class Room(mg.World):
+    """A world that knows how it is made again."""
+
+    def __reduce__(self) -> tuple[type, tuple[()]]:
+        return Room, ()
+
+
+def test_classes_that_derive_from_ours_may_know_better() -> None:
+    assert type(pickle.loads(pickle.dumps(Room()))) is Room
+
+
 def test_states_of_other_versions_are_refused() -> None:
     reduced: Any = mg.Box([1, 2, 3]).__reduce_ex__(4)
     kind, state = reduced[1]

@@ -1,109 +1,116 @@
-#include "bindings.hpp"
-#include "mmgrasp/task/base_region.hpp"
+#include <unordered_map>
 
-// Grids and regions travel between processes (mmgrasp.cluster): they pickle, to the last bit.
+#include "bindings.hpp"
+#include "given.hpp"
+#include "mmgrasp/reach/capability_map.hpp"
+#include "mmgrasp/robot/detail/group_record.hpp"
+#include "mmgrasp/robot/detail/robot_record.hpp"
+#include "mmgrasp/task/object_regions.hpp"
+#include "pickles.hpp"
+#include "plain_structs.hpp"
+#include "shown.hpp"
+
+// Objects that are data alone pickle, to the last bit; of others `mmgrasp._pickling` says what to do instead.
 
 namespace mmgrasp::python {
 namespace {
 
-py::bytes packed(const CellMask& cells) {
-  return py::bytes(reinterpret_cast<const char*>(cells.data()), cells.size());
+std::unordered_map<PyObject*, PickleFunctions>& pickles_by_class() {
+  static auto* known = new std::unordered_map<PyObject*, PickleFunctions>();  // classes outlive static objects
+  return *known;
 }
 
-CellMask unpacked(const py::handle& state) {
-  const auto text = py::cast<std::string>(state);
-  return CellMask(text.begin(), text.end());
+const PickleFunctions* pickle_of(const py::handle& kind) {
+  const auto found = pickles_by_class().find(kind.ptr());
+  return found == pickles_by_class().end() ? nullptr : &found->second;
 }
 
-py::tuple grid_state(const BaseGrid& g) {
-  return py::make_tuple(Eigen::Vector2d(g.origin), g.resolution, g.nx, g.ny, g.headings);
+/// Of all classes that pybind11 makes: those of other modules go on as they did.
+py::object reduced(const py::object& self, int protocol) {
+  const py::type kind = py::type::of(self);
+  const py::module_ helpers = py::module_::import("mmgrasp._pickling");
+  if (const PickleFunctions* functions = pickle_of(kind))
+    return py::make_tuple(helpers.attr("restored"), py::make_tuple(kind, functions->pack(self)));
+  helpers.attr("refuse")(self);
+  return py::module_::import("builtins").attr("object").attr("__reduce_ex__")(self, protocol);
 }
 
-BaseGrid grid_of(const py::tuple& s) {
-  return BaseGrid{py::cast<Eigen::Vector2d>(s[0]), py::cast<double>(s[1]), py::cast<int>(s[2]), py::cast<int>(s[3]),
-                  py::cast<std::vector<double>>(s[4])};
+py::object packed_robot(const py::handle& self) {
+  return packed(detail::record_of(py::cast<const Robot&>(self)));
 }
 
-py::tuple explanation_state(const PartExplanation& e) {
-  const Rejections& r = e.rejections;
-  return py::make_tuple(e.part, e.grasps, e.base_poses_tried, e.base_poses_feasible, r.unreachable, r.limits,
-                        r.self_collision, r.scene, r.grasp_filter);
+py::object made_robot(const py::handle& state) {
+  return py::cast(detail::robot_of(Packed<detail::RobotRecord>::to(state)));
 }
 
-PartExplanation explanation_of(const py::tuple& s) {
-  const auto count = [&](std::size_t i) { return py::cast<std::size_t>(s[i]); };
-  PartExplanation e;
-  e.part = py::cast<std::string>(s[0]);
-  e.grasps = py::cast<int>(s[1]);
-  e.base_poses_tried = count(2);
-  e.base_poses_feasible = count(3);
-  e.rejections = {count(4), count(5), count(6), count(7), count(8)};
-  return e;
+/// The robot goes as an object of its own: groups of one robot have one afterwards, too.
+py::object packed_group(const py::handle& self) {
+  return py::make_tuple(self.attr("robot"), packed(detail::record_of(py::cast<const JointGroup&>(self))));
 }
 
-py::tuple region_state(const BaseRegion& r) {
-  py::list parts, explanations;
-  for (const PartCells& cells : r.part_cells) {
-    py::list windows;
-    for (const PartCells::Window& w : cells.windows())
-      windows.append(py::make_tuple(w.heading, w.x0, w.y0, w.nx, w.ny, packed(w.flags)));
-    parts.append(py::make_tuple(cells.nx(), cells.ny(), cells.size(), windows));
-  }
-  for (const PartExplanation& e : r.explanations) explanations.append(explanation_state(e));
-  return py::make_tuple(r.tray, packed(r.cells), parts, explanations, r.base_poses_in_collision);
+py::object made_group(const py::handle& state) {
+  const auto values = py::cast<py::tuple>(state);
+  return py::cast(detail::group_of(py::cast<const Robot&>(values[0]), Packed<detail::GroupRecord>::to(values[1])));
 }
 
-BaseRegion region_of(const py::tuple& s) {
-  BaseRegion r;
-  r.tray = py::cast<std::string>(s[0]);
-  r.cells = unpacked(s[1]);
-  for (const py::handle& cells : s[2]) {
-    const auto state = py::cast<py::tuple>(cells);
-    std::vector<PartCells::Window> windows;
-    for (const py::handle& window : state[3]) {
-      const auto w = py::cast<py::tuple>(window);
-      const auto number = [&w](std::size_t i) { return py::cast<int>(w[i]); };
-      windows.push_back({number(0), number(1), number(2), number(3), number(4), unpacked(w[5])});
-    }
-    r.part_cells.emplace_back(py::cast<int>(state[0]), py::cast<int>(state[1]), py::cast<std::size_t>(state[2]),
-                              std::move(windows));
-  }
-  for (const py::handle& e : s[3]) r.explanations.push_back(explanation_of(py::cast<py::tuple>(e)));
-  r.base_poses_in_collision = py::cast<std::size_t>(s[4]);
-  return r;
-}
+constexpr char kMemo[] = "dict[int, object]";
+constexpr char kObject[] = "object";
+using Memo = Shown<kMemo>;
+using AnyObject = Shown<kObject>;
 
-/// No __setstate__: it would need an object that nothing has made yet.
-template <class Class, class State, class Made>
-void pickles(py::class_<Class>& declared_class, State state, Made made) {
-  using Tuple = py::typing::Tuple<py::object, py::ellipsis>;
-  declared_class.def_static(
-      "_from_state", [made](const Tuple& values) { return made(values); }, py::arg("state"));
-  declared_class.def("__reduce__", [state](const py::object& self) {
-    const py::object restored = py::module_::import("mmgrasp._pickling").attr("restored");
-    const py::object content = state(py::cast<const Class&>(self));
-    return Tuple(py::make_tuple(restored, py::make_tuple(py::type::of(self), content)));
-  });
+/// Nothing changes such objects: each is its own copy.
+template <typename T>
+void copies_as_itself(py::module_& m, const char* name) {
+  auto kind = declared<T>(m, name);
+  kind.def("__copy__", [](const Given<T>& self) { return self; });
+  kind.def(
+      "__deepcopy__", [](const Given<T>& self, const Memo&) { return self; }, py::arg("memo"));
 }
 
 }  // namespace
 
+void set_pickle(const py::module_& m, const char* name, PickleFunctions functions) {
+  pickles_by_class()[m.attr(name).ptr()] = functions;
+}
+
 void bind_pickle(py::module_& m) {
-  auto grid = declared<BaseGrid>(m, "BaseGrid");
-  pickles(grid, &grid_state, &grid_of);
-  auto explanation = declared<PartExplanation>(m, "PartExplanation");
-  pickles(explanation, &explanation_state, &explanation_of);
-  auto region = declared<BaseRegion>(m, "BaseRegion");
-  pickles(region, &region_state, &region_of);
-  region.def(py::init([](std::string tray, const ArrayLike& cells, const BaseGrid& g) {
-               BaseRegion known;
-               known.tray = std::move(tray);
-               known.cells = flags_argument(
-                   cells, "cells", {static_cast<py::ssize_t>(g.headings.size()), py::ssize_t{g.ny}, py::ssize_t{g.nx}});
-               return known;
-             }),
-             py::arg("tray"), py::arg("cells"), py::arg("grid"),
-             "A region known from elsewhere: (headings, ny, nx) zeros and ones, to be intersected with others.");
+  bind_plain_pickles(m);
+  bind_task_pickles(m);
+  plain<WholeBodyTrajectory>(m, "WholeBodyTrajectory");
+  set_pickle(m, "Robot", {&packed_robot, &made_robot});
+  set_pickle(m, "JointGroup", {&packed_group, &made_group});
+  copies_as_itself<Robot>(m, "Robot");
+  copies_as_itself<JointGroup>(m, "JointGroup");
+  copies_as_itself<MeshShape>(m, "Mesh");
+  copies_as_itself<ReachDatabase>(m, "ReachDatabase");
+  copies_as_itself<CapabilityMap>(m, "CapabilityMap");
+  copies_as_itself<Roadmap>(m, "Roadmap");
+  copies_as_itself<ObjectRegions>(m, "ObjectRegions");
+  auto world = declared<World>(m, "World");
+  world.def("__copy__", [](const World& w) { return World(w); });
+  world.def(
+      "__deepcopy__", [](const World& w, const Memo&) { return World(w); }, py::arg("memo"));
+  m.def(
+      "_from_pickle",
+      [](const py::type& kind, const AnyObject& state) -> AnyObject {
+        const PickleFunctions* functions = pickle_of(kind);
+        if (functions == nullptr) throw py::type_error("a pickle of another version of mmgrasp");
+        return functions->make(state);
+      },
+      py::arg("kind"), py::arg("state"));
+  py::object base = py::type::of<Robot>().attr("__mro__").attr("__getitem__")(-2);
+  base.attr("__reduce_ex__") =
+      py::cpp_function(&reduced, py::name("__reduce_ex__"), py::is_method(base), py::arg("protocol"));
+  declared<BaseRegion>(m, "BaseRegion")
+      .def(py::init([](std::string tray, const ArrayLike& cells, const BaseGrid& g) {
+             BaseRegion known;
+             known.tray = std::move(tray);
+             known.cells = flags_argument(
+                 cells, "cells", {static_cast<py::ssize_t>(g.headings.size()), py::ssize_t{g.ny}, py::ssize_t{g.nx}});
+             return known;
+           }),
+           py::arg("tray"), py::arg("cells"), py::arg("grid"),
+           "A region known from elsewhere: (headings, ny, nx) zeros and ones, to be intersected with others.");
 }
 
 }  // namespace mmgrasp::python

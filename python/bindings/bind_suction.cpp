@@ -8,22 +8,23 @@ namespace mmgrasp::python {
 namespace {
 
 using namespace py::literals;
-using Options = SuctionSamplerOptions;
+using SuctionOptions = SuctionSamplerOptions;
 
-const std::vector<OptionField<Options>>& sampler_fields() {
-  static const std::vector<OptionField<Options>> fields{
-      option<Options>("turns", &Options::turns, "turns of the hand about its approach at each place"),
-      option<Options>("surface_samples", &Options::surface_samples, "places drawn on the surface"),
-      option<Options>("max_grasps", &Options::max_grasps, "best kept, spread over approach directions and turns"),
-      option<Options>("seed", &Options::seed, "same seed, same grasps")};
+const std::vector<OptionField<SuctionOptions>>& sampler_fields() {
+  static const std::vector<OptionField<SuctionOptions>> fields{
+      option<SuctionOptions>("turns", &SuctionOptions::turns, "turns of the hand about its approach at each place"),
+      option<SuctionOptions>("surface_samples", &SuctionOptions::surface_samples, "places drawn on the surface"),
+      option<SuctionOptions>("max_grasps", &SuctionOptions::max_grasps,
+                             "best kept, spread over approach directions and turns"),
+      option<SuctionOptions>("seed", &SuctionOptions::seed, "same seed, same grasps")};
   return fields;
 }
 
-const BoundedOptions<Options>& sampler_options() {
-  static const BoundedOptions<Options> options(sampler_fields(), {{"turns", {1, 360, "turns"}},
-                                                                  {"surface_samples", {0, 1e5, "places"}},
-                                                                  {"max_grasps", {1, 1e6, "grasps"}},
-                                                                  {"seed", {0, kMostSeed, ""}}});
+const BoundedOptions<SuctionOptions>& sampler_options() {
+  static const BoundedOptions<SuctionOptions> options(sampler_fields(), {{"turns", {1, 360, "turns"}},
+                                                                         {"surface_samples", {0, 1e5, "places"}},
+                                                                         {"max_grasps", {1, 1e6, "grasps"}},
+                                                                         {"seed", {0, kMostSeed, ""}}});
   return options;
 }
 
@@ -88,7 +89,7 @@ void bind_suction_grasps(py::module_& m) {
   m.def(
       "sample_suction_grasps",
       [](const std::vector<LinkShape>& object, const Hand& hand, double mass, const py::kwargs& options) {
-        const Options read = sampler_options().read(options, "sample_suction_grasps");
+        const SuctionOptions read = sampler_options().read(options, "sample_suction_grasps");
         return interruptible([&] { return sample_suction_grasps(object, hand, mass, read); });
       },
       py::arg("object"), py::arg("hand"), py::arg("mass") = 0.0,

@@ -40,7 +40,7 @@ void bind_plan(py::module_& m);
 void bind_base_regions(py::module_& m);
 void bind_base_sequence(py::module_& m);
 void bind_task(py::module_& m);
-void bind_pickle(py::module_& m);  ///< After the classes it adds to.
+void bind_pickle(py::module_& m);  ///< After all classes.
 void bind_platform_locations(py::module_& m);
 void bind_verify(py::module_& m);
 

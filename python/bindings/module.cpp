@@ -93,7 +93,6 @@ PYBIND11_MODULE(_core, m) {
   bind_trajopt(m);
   bind_nonlinear(m);
   bind_robot_motion(m);
-  bind_pickle(m);
   bind_platform_locations(m);
   bind_mapping(m);
   bind_sdf(m);
@@ -111,6 +110,7 @@ PYBIND11_MODULE(_core, m) {
   bind_operation_checks(m);
   bind_plan_grippers(m);
   bind_verify(m);
+  bind_pickle(m);
   refuse_bare_objects(m);
   explain_argument_errors(m);
   end_calls_at_exit();

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple, ParamSpec, TypeVar
 import numpy as np
 
 from . import _core
+from ._progress import heard
 from .documents.reading import near_miss
 
 P = ParamSpec("P")
@@ -159,14 +160,16 @@ def checked(function: Callable[P, R]) -> Callable[P, R]:
     @functools.wraps(function)
     def call(*args: P.args, **kwargs: P.kwargs) -> R:
         try:
-            given = signature.bind(*args, **kwargs).arguments
+            bound = signature.bind(*args, **kwargs)
         except TypeError:
             return function(*args, **kwargs)  # which says what is missing or unknown
-        for name, value in given.items():
+        for name, value in bound.arguments.items():
             parameter = signature.parameters[name]
             if parameter.kind not in (parameter.VAR_KEYWORD, parameter.VAR_POSITIONAL) and parameter.annotation:
                 _require(name, str(parameter.annotation), value, space)
-        return function(*args, **kwargs)
+            if parameter.annotation == "Progress":
+                bound.arguments[name] = heard(value)
+        return function(*bound.args, **bound.kwargs)
 
     return call
 
@@ -240,7 +243,7 @@ def _misfit_one(annotation: str, value: Any, space: dict[str, Any]) -> _Misfit |
 
 def _fits(kind: str, value: Any, space: dict[str, Any]) -> bool:
     """Whether a value is of a plain kind; kinds that are not known here fit."""
-    is_bound = space is _BOUND  # pybind11 takes bytes for texts, and booleans for numbers
+    is_bound = space is _BOUND  # pybind11 takes booleans for numbers
     if kind in ("float", "int"):
         methods = ("__index__",) if kind == "int" else ("__float__", "__index__")
         return any(hasattr(value, method) for method in methods) and (is_bound or not isinstance(value, bool))
@@ -249,8 +252,6 @@ def _fits(kind: str, value: Any, space: dict[str, Any]) -> bool:
     if kind == "None":
         return value is None
     found: Any = _KINDS.get(kind)
-    if kind == "str" and is_bound:
-        found = (str, bytes)
     if found is None and kind not in _ARRAYS:
         first, *path = kind.split(".")
         found = space.get(first)

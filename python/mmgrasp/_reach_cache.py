@@ -9,7 +9,7 @@ from typing import Any
 from . import _core
 from ._core import IoError, JointGroup, ReachDatabase
 from ._files import check_folder
-from ._progress import Progress
+from ._progress import Progress, heard, is_callers
 
 _REPLACING = "replacing a damaged reachability database"  # stages that ReachDatabase.load_or_build reports
 _NOT_KEPT = "the reachability database is not kept: "
@@ -19,6 +19,7 @@ _HINT = "planning goes on without the cache: set XDG_CACHE_HOME to a folder that
 def cached_database(arm: JointGroup, progress: Progress = None, **options: Any) -> ReachDatabase:
     """The arm's database from the cache, or built now and kept there if that can be; options of ReachDatabase.build."""
     log = logging.getLogger("mmgrasp")
+    progress = heard(progress)
 
     def hear(stage: str, fraction: float) -> None:
         if stage == _REPLACING:
@@ -32,5 +33,7 @@ def cached_database(arm: JointGroup, progress: Progress = None, **options: Any) 
         check_folder(Path(_core.cache_folder()))
         return ReachDatabase.load_or_build(arm, _core.cache_folder(), progress=hear, **options)
     except IoError as error:
+        if is_callers(error):
+            raise
         log.warning("%s; %s", error, _HINT)
         return ReachDatabase.build(arm, progress=progress, **options)

@@ -140,6 +140,12 @@ def time_stands(plan: dict[str, Any]) -> None:
     times[3] = times[2]
 
 
+def clock_begins_late(plan: dict[str, Any]) -> None:
+    for pick in plan["picks"]:
+        for m in pick["motions"]:
+            m["times"] = [t + 5 for t in m["times"]]
+
+
 def stop_added(plan: dict[str, Any]) -> None:
     plan["stops"].append(copy.deepcopy(plan["stops"][0]))
     last = plan["route"][-1]["poses"][0]
@@ -368,6 +374,7 @@ BREAKS = [
     not_holding,
     time_runs_backwards,
     time_stands,
+    clock_begins_late,
     stop_added,
     bound_lowered,
     uncertainty_grown,

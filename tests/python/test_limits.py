@@ -106,6 +106,7 @@ AT: list[tuple[tuple[str | int, ...], Any]] = [
 ELSEWHERE = {
     "what is counted (iterations, restarts, draws, evaluations)": "test_far_out.py: a_budget_beyond_the_largest",
     "steps that paths and edges are walked in, sample periods": "test_far_out.py: steps_that_cannot_be_counted",
+    "COLLADA meshes (.dae)": "test_mesh_fuzz.py: def test_collada_that_is_refused(",
     "folders of databases and capability maps": "test_module_files.py: def test_a_database_does_not_replace_a_folder_with_more_in_it(",
     "places that are written": "test_output_places.py: def test_places_that_cannot_be_written_are_found_at_once(",
     "what others write in the meantime": "test_output_folder.py: def test_what_somebody_writes_in_the_meantime_is_not_replaced(",

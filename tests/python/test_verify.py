@@ -52,6 +52,7 @@ def test_broken_plans_are_refused(small_plan_dict: dict[str, Any], breaking: Any
         (plan_breaks.fingers_stand_clear_of_the_part, "grasp-opening"),
         marked(plan_breaks.region_and_radius_inflated, "stop-radius"),
         (plan_breaks.workspace_shrunk, "base-workspace"),
+        (plan_breaks.clock_begins_late, "times"),
     ],
     ids=lambda f: getattr(f, "__name__", f),
 )

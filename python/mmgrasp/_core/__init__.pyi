@@ -46,6 +46,10 @@ class Robot:
         cylinder that contains a collision mesh and sticks out at most `mesh_tolerance` [m] replaces it; 0: only
         what is the same solid. Raises IoError or InvalidInput naming file, element, value and rule.
         """
+    def __copy__(self) -> Robot:
+        ...
+    def __deepcopy__(self, memo: dict[int, typing.Any]) -> Robot:
+        ...
     def __repr__(self) -> str:
         ...
     def collisions(self, link: str) -> list[LinkShape]:
@@ -185,6 +189,10 @@ class JointGroup:
     Configurations are arrays (n,): base joints x, y, theta first when the group has them (`with_base=True`), then the chain in
     order. All other joints stay at the group's reference values.
     """
+    def __copy__(self) -> JointGroup:
+        ...
+    def __deepcopy__(self, memo: dict[int, typing.Any]) -> JointGroup:
+        ...
     def __len__(self) -> int:
         ...
     def __repr__(self) -> str:
@@ -384,6 +392,10 @@ class World:
     A checker or planner keeps the world that it was given: later changes do not reach it.
     """
     def __contains__(self, arg0: str) -> bool:
+        ...
+    def __copy__(self) -> World:
+        ...
+    def __deepcopy__(self, memo: dict[int, typing.Any]) -> World:
         ...
     def __init__(self) -> None:
         """
@@ -707,6 +719,10 @@ class Mesh:
         """
         Reads STL, OBJ, DAE or PLY. `scale` is a number or one per axis. Raises IoError naming file and place.
         """
+    def __copy__(self) -> Mesh:
+        ...
+    def __deepcopy__(self, memo: dict[int, typing.Any]) -> Mesh:
+        ...
     def __repr__(self) -> str:
         ...
     @property
@@ -1478,6 +1494,10 @@ class ReachDatabase:
             seed: int = 1  # same seed, same database
             threads: int = 0  # 0: all; does not change the answer
         """
+    def __copy__(self) -> ReachDatabase:
+        ...
+    def __deepcopy__(self, memo: dict[int, typing.Any]) -> ReachDatabase:
+        ...
     def __len__(self) -> int:
         ...
     def __repr__(self) -> str:
@@ -1655,6 +1675,10 @@ class CapabilityMap:
         """
         Raises IoError on a truncated, foreign or corrupt folder.
         """
+    def __copy__(self) -> CapabilityMap:
+        ...
+    def __deepcopy__(self, memo: dict[int, typing.Any]) -> CapabilityMap:
+        ...
     def __repr__(self) -> str:
         ...
     def best_base_distance(self, T_world_tips: numpy.typing.ArrayLike, distances: numpy.typing.ArrayLike, heading: float = 0.0, cone: float = 4.0) -> tuple[float, float, list[float]]:
@@ -2388,6 +2412,10 @@ class Roadmap:
         """
         Raises IoError on a damaged file or one made for another robot, joints or limits.
         """
+    def __copy__(self) -> Roadmap:
+        ...
+    def __deepcopy__(self, memo: dict[int, typing.Any]) -> Roadmap:
+        ...
     def __len__(self) -> int:
         ...
     def __repr__(self) -> str:
@@ -3148,16 +3176,11 @@ class BaseGrid:
     """
     Square cells over the floor, one layer for each heading.
     """
-    @staticmethod
-    def _from_state(state: tuple[typing.Any, ...]) -> BaseGrid:
-        ...
     def __init__(self, origin: numpy.typing.ArrayLike, resolution: float, nx: int, ny: int, headings: numpy.typing.ArrayLike = (0.0,)) -> None:
         """
         `origin` (2,) is the lower corner of cell (0, 0) [m], `resolution` the edge of a cell [m], nx and ny the
         cells along x and y, `headings` one layer each [rad], distinct.
         """
-    def __reduce__(self) -> tuple[typing.Any, ...]:
-        ...
     def __repr__(self) -> str:
         ...
     def centre(self, heading: int, ix: int, iy: int) -> numpy.typing.NDArray[numpy.float64]:
@@ -3193,11 +3216,6 @@ class PartExplanation:
     """
     What became of the candidates for one part over all base poses tried.
     """
-    @staticmethod
-    def _from_state(state: tuple[typing.Any, ...]) -> PartExplanation:
-        ...
-    def __reduce__(self) -> tuple[typing.Any, ...]:
-        ...
     def __repr__(self) -> str:
         ...
     def to_dict(self) -> dict[str, typing.Any]:
@@ -3233,15 +3251,10 @@ class BaseRegion:
     """
     Base poses from which every target part of a tray can be grasped.
     """
-    @staticmethod
-    def _from_state(state: tuple[typing.Any, ...]) -> BaseRegion:
-        ...
     def __init__(self, tray: str, cells: numpy.typing.ArrayLike, grid: BaseGrid) -> None:
         """
         A region known from elsewhere: (headings, ny, nx) zeros and ones, to be intersected with others.
         """
-    def __reduce__(self) -> tuple[typing.Any, ...]:
-        ...
     def __repr__(self) -> str:
         ...
     def cells(self, grid: BaseGrid) -> numpy.typing.NDArray[numpy.uint8]:
@@ -3286,6 +3299,10 @@ class ObjectRegions:
         """
         The same as compute_base_regions, kept part by part.
         """
+    def __copy__(self) -> ObjectRegions:
+        ...
+    def __deepcopy__(self, memo: dict[int, typing.Any]) -> ObjectRegions:
+        ...
     def __repr__(self) -> str:
         ...
     def base_region(self, tray: int) -> BaseRegion:
@@ -7034,6 +7051,8 @@ def _first_drive_by_guess(group: JointGroup, *, start: numpy.typing.ArrayLike, t
     """
     The guess of the first seed, for benchmarks against other optimisers; None when a task is out of reach. solve() takes it from there, judging included: whether it is solved, the duration, processor seconds that judging once more took, and iterations.
     """
+def _from_pickle(kind: type, state: typing.Any) -> typing.Any:
+    ...
 def _grasp_option_bounds() -> dict[str, typing.Any]:
     ...
 def _grasp_option_table() -> dict[str, typing.Any]:

@@ -18,6 +18,7 @@ import numpy as np
 
 from .._core import InvalidInput, IoError, pose
 from .._files import printable, read_text
+from .._progress import is_callers
 from .yaml_text import Key as Key
 from .yaml_text import bad_yaml as bad_yaml
 from .yaml_text import parse_yaml
@@ -118,7 +119,7 @@ class Node:
         try:
             yield
         except (InvalidInput, IoError) as error:
-            if self.document.source in str(error):
+            if is_callers(error) or self.document.source in str(error):
                 raise
             raise type(error)(printable(f"{self.place}: {self.name}: {error}")) from None
 

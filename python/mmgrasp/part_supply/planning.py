@@ -14,7 +14,7 @@ from .. import _core
 from .._argument_errors import checked
 from .._core import InvalidInput, Outcome, PartSupplyPlan, PartSupplyProblem, ReachDatabase, RobotMotion
 from .._files import check_file, write_file, write_files
-from .._progress import Progress
+from .._progress import Progress, is_callers
 from ..scenario import Scenario, load_scenario
 from .chosen_parts import by_number, choose_parts, others_will_do
 from .plan_writer import plan_to_dict, scenario_to_dict
@@ -171,6 +171,8 @@ def plan_part_supply(
             return _plan_by_number(scenario, reach, timings, progress)
         return ScenarioPlan(scenario, _core.plan_part_supply(problem, reach, progress=progress), timings)
     except InvalidInput as error:
+        if is_callers(error):
+            raise
         raise InvalidInput(f"{scenario.source}: {error}") from None
 
 

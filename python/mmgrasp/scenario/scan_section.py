@@ -15,7 +15,7 @@ import numpy as np
 from .. import _core
 from .._core import Box, Grasp, Hand, InvalidInput, IoError, LinkShape, Outcome, Part, ProbabilisticSdf
 from .._files import printable, sha256_of
-from .._progress import Progress
+from .._progress import Progress, is_callers
 from ..documents.reading import Node
 from ..scan.map_folder import MAP, TrayObject, load_map, objects_in_tray
 from ..scan.rendered import Tour, rendered_map
@@ -185,6 +185,8 @@ class ScanReader:
         try:
             return rendered_map(folder, scene, target, tour, self._progress)
         except (IoError, OSError) as error:
+            if is_callers(error):
+                raise
             node.fail(f"{error}: its frames are kept in the cache: set XDG_CACHE_HOME to a folder that can be written")
 
     def _with_grasps(

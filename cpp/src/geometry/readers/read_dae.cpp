@@ -7,7 +7,7 @@
 #include <assimp/Importer.hpp>
 
 #include "geometry/readers/mesh_readers.hpp"
-#include "mmgrasp/core/detail/xml_markup.hpp"
+#include "mmgrasp/geometry/detail/checked_dae.hpp"
 
 namespace mmgrasp::detail {
 
@@ -46,13 +46,11 @@ void add_node(const aiScene& scene, const aiNode& node, const Eigen::Matrix4d& T
 }  // namespace
 
 RawMesh read_dae(const std::string& path, std::string_view content) {
-  // The importer forgives what is no XML and returns the part it understood.
-  if (const auto fault = find_markup_fault(content))
-    mesh_error(path, "line " + std::to_string(fault->line) + ": no valid DAE: " + fault->reason);
+  const std::string checked = checked_dae(path, content);
   Assimp::Importer importer;
   // URDF tools show DAE coordinates as they stand, whatever <up_axis> says; the unit scales the root node.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
-  const aiScene* scene = importer.ReadFileFromMemory(content.data(), content.size(), aiProcess_Triangulate, "dae");
+  const aiScene* scene = importer.ReadFileFromMemory(checked.data(), checked.size(), aiProcess_Triangulate, "dae");
   if (scene == nullptr || scene->mRootNode == nullptr)
     mesh_error(path, std::string("no valid DAE: ") + importer.GetErrorString());
   RawMesh mesh;

@@ -1,5 +1,6 @@
 // Wavefront OBJ files.
 #include <algorithm>
+#include <limits>
 
 #include "geometry/readers/mesh_readers.hpp"
 
@@ -93,8 +94,11 @@ class ObjReader {
       if (!parse_integer(index, value) || value == 0)
         fail("'" + std::string(words[i].substr(0, 40)) + "' is no corner");
       // Negative indices count back from the latest vertex.
-      corners.push_back(static_cast<int>(value > 0 ? value - 1 : static_cast<long>(mesh_.vertices.size()) + value));
-      if (corners.back() < 0) fail("corner " + std::to_string(value) + " points before the first vertex");
+      const long corner = value > 0 ? value - 1 : static_cast<long>(mesh_.vertices.size()) + value;
+      if (corner < 0) fail("corner " + std::to_string(value) + " points before the first vertex");
+      if (corner >= std::numeric_limits<int>::max())
+        fail("corner " + std::to_string(value) + " is beyond all vertices");
+      corners.push_back(static_cast<int>(corner));
     }
     add_polygon(mesh_, corners);
   }

@@ -170,7 +170,9 @@ class PlyReader {
       if (property.is_list) {
         std::vector<int> list(read_count(property, element));
         for (int& index : list) index = static_cast<int>(std::clamp(read_value(property.type, element), -1.0, 2e9));
-        if (property.name == "vertex_indices" || property.name == "vertex_index") add_polygon(mesh_, list);
+        if (property.name != "vertex_indices" && property.name != "vertex_index") continue;
+        if (list.size() < 3) mesh_error(path_, "a face has " + std::to_string(list.size()) + " corners, needs three");
+        add_polygon(mesh_, list);
       } else {
         const double value = read_value(property.type, element);
         if (!is_vertex) continue;

@@ -11,6 +11,7 @@
 #include "mmgrasp/core/error.hpp"
 #include "reach/capability/capability_data.hpp"
 #include "reach/database/reach_data.hpp"
+#include "reach/database/saved_folder.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -151,6 +152,34 @@ std::vector<unsigned char> read_array(const std::string& folder, const ArrayFile
   return {file.data() + header.size(), file.data() + file.size()};
 }
 
+CapabilityMap load_once(const std::string& path) {
+  std::error_code error;
+  if (!fs::is_directory(path, error)) refuse(path, "no such folder");
+  const std::string meta_path = (fs::path(path) / "meta.json").string();
+  if (!fs::is_regular_file(meta_path, error)) refuse(path, "not a capability map: it holds no meta.json");
+  const detail::JsonValue meta = read_meta(meta_path);
+  auto data = std::make_shared<Data>();
+  data->options = read_options(meta.at("options"), meta_path);
+  data->arm_key = meta.at("arm_key").string();
+  const std::int64_t joints = meta.at("joints").integer(), reached = meta.at("reached").integer();
+  data->lay_out();
+  const std::int64_t most = data->voxel_count() * static_cast<std::int64_t>(data->poses());
+  if (joints < 1 || joints > 1000 || reached < 0 || reached > most) refuse(meta_path, "corrupt: impossible counts");
+  data->joints = static_cast<int>(joints);
+  const std::vector<ArrayFile> files = array_files(*data, static_cast<std::uint64_t>(reached));
+  data->classes = read_array(path, files[0], meta);
+  const std::vector<unsigned char> configurations = read_array(path, files[1], meta);
+  data->configurations.resize(configurations.size() / sizeof(float));
+  if (!configurations.empty()) std::memcpy(data->configurations.data(), configurations.data(), configurations.size());
+  read_array(path, files[2], meta);
+  read_array(path, files[3], meta);
+  for (const std::uint8_t cause : data->classes)
+    if (cause > static_cast<std::uint8_t>(Rejection::scene)) refuse(path, "corrupt: classes.npy holds no class");
+  data->complete();
+  if (data->first.back() != reached) refuse(path, "corrupt: classes.npy contradicts meta.json");
+  return CapabilityMap(std::move(data));
+}
+
 }  // namespace
 
 void CapabilityMap::save(const std::string& folder) const {
@@ -182,31 +211,7 @@ void CapabilityMap::save(const std::string& folder) const {
 }
 
 CapabilityMap CapabilityMap::load(const std::string& path) {
-  std::error_code error;
-  if (!fs::is_directory(path, error)) refuse(path, "no such folder");
-  const std::string meta_path = (fs::path(path) / "meta.json").string();
-  if (!fs::is_regular_file(meta_path, error)) refuse(path, "not a capability map: it holds no meta.json");
-  const detail::JsonValue meta = read_meta(meta_path);
-  auto data = std::make_shared<Data>();
-  data->options = read_options(meta.at("options"), meta_path);
-  data->arm_key = meta.at("arm_key").string();
-  const std::int64_t joints = meta.at("joints").integer(), reached = meta.at("reached").integer();
-  data->lay_out();
-  const std::int64_t most = data->voxel_count() * static_cast<std::int64_t>(data->poses());
-  if (joints < 1 || joints > 1000 || reached < 0 || reached > most) refuse(meta_path, "corrupt: impossible counts");
-  data->joints = static_cast<int>(joints);
-  const std::vector<ArrayFile> files = array_files(*data, static_cast<std::uint64_t>(reached));
-  data->classes = read_array(path, files[0], meta);
-  const std::vector<unsigned char> configurations = read_array(path, files[1], meta);
-  data->configurations.resize(configurations.size() / sizeof(float));
-  if (!configurations.empty()) std::memcpy(data->configurations.data(), configurations.data(), configurations.size());
-  read_array(path, files[2], meta);
-  read_array(path, files[3], meta);
-  for (const std::uint8_t cause : data->classes)
-    if (cause > static_cast<std::uint8_t>(Rejection::scene)) refuse(path, "corrupt: classes.npy holds no class");
-  data->complete();
-  if (data->first.back() != reached) refuse(path, "corrupt: classes.npy contradicts meta.json");
-  return CapabilityMap(std::move(data));
+  return detail::load_from_one_folder(path, [&path] { return load_once(path); });
 }
 
 }  // namespace mmgrasp

@@ -10,6 +10,7 @@
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/parallel.hpp"
 #include "reach/database/reach_meta.hpp"
+#include "reach/database/saved_folder.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -99,6 +100,41 @@ detail::View<T> view(const detail::CheckedFile& file, std::uint64_t count) {
   return {reinterpret_cast<const T*>(file.payload()), count};
 }
 
+ReachDatabase load_once(const std::string& path) {
+  std::error_code error;
+  if (is_old_file(path))
+    refuse(path, "a reachability database in the one-file format of earlier versions; build it again");
+  if (!fs::exists(path, error)) refuse(path, "no such file or folder");
+  if (!fs::is_directory(path, error)) refuse(path, "not a reachability database (those are folders)");
+  const std::string meta_path = file_in(path, detail::kMetaFile);
+  if (!fs::is_regular_file(meta_path, error))
+    refuse(path, "not a reachability database: it holds no " + std::string(detail::kMetaFile));
+
+  auto data = std::make_shared<Data>();
+  detail::Meta meta = detail::read_meta(meta_path, *data);
+  const auto joints = static_cast<std::uint64_t>(data->joints);
+  const auto layouts = detail::array_layouts(meta.positions, meta.cells, meta.size, joints);
+  for (int i = 0; i < detail::kArrayCount; ++i)
+    data->files.push_back(std::make_unique<detail::CheckedFile>(file_in(path, detail::kArrayFiles[i]), layouts[i],
+                                                                std::move(meta.checksums[i])));
+  // The tables are small and are checked now; the configurations when they are first checked.
+  for (int i = 0; i + 1 < detail::kArrayCount; ++i)
+    if (layouts[i].payload_bytes() > 0) data->files[i]->ensure(0, layouts[i].payload_bytes());
+  data->positions = view<std::int32_t>(*data->files[0], 3 * meta.positions);
+  data->position_first = view<std::uint32_t>(*data->files[1], meta.positions + 1);
+  data->rotation_ids = view<std::uint32_t>(*data->files[2], meta.cells);
+  data->cell_first = view<std::uint32_t>(*data->files[3], meta.cells + 1);
+  data->configurations = view<std::uint16_t>(*data->files[4], meta.size * joints);
+  data->configuration_file = data->files[4].get();
+  data->folder = path;
+  if (data->cell_first[meta.cells] != meta.size) refuse(path, "corrupt: the tables contradict each other");
+  check_tables(*data, path);
+  data->complete();
+  check_order(*data, path);
+  check_bounds(*data, path);
+  return ReachDatabase(std::move(data));
+}
+
 }  // namespace
 
 namespace detail {
@@ -146,13 +182,16 @@ void put_in_place(const std::string& written, const std::string& path) {
   int strange = 0;
   while (strange < kLooks && is_something_else(path, written)) ++strange;
   if (strange == kLooks) refuse(path, "cannot be written: something else stands there that saving would remove");
-  // A folder cannot replace a full one in one step: for a moment none is there, never half of one. Others may do the
-  // same at the same time; the last one stays.
+  // Others may do the same at the same time; the last one stays.
   constexpr int kAttempts = 20;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     fs::rename(written, path, error);
-    if (!error) return;
-    move_away(path);
+    if (!error) return;  // nothing, or an empty folder, was there
+    if (exchange_places(written, path)) {
+      fs::remove_all(written, error);
+      return;
+    }
+    move_away(path);  // some file systems cannot exchange: for a moment none is there, never half of one
   }
   refuse(path, "cannot put the written folder in place (" + error.message() + ")");
 }
@@ -182,38 +221,7 @@ void ReachDatabase::save(const std::string& folder) const {
 }
 
 ReachDatabase ReachDatabase::load(const std::string& path) {
-  std::error_code error;
-  if (is_old_file(path))
-    refuse(path, "a reachability database in the one-file format of earlier versions; build it again");
-  if (!fs::exists(path, error)) refuse(path, "no such file or folder");
-  if (!fs::is_directory(path, error)) refuse(path, "not a reachability database (those are folders)");
-  const std::string meta_path = file_in(path, detail::kMetaFile);
-  if (!fs::is_regular_file(meta_path, error))
-    refuse(path, "not a reachability database: it holds no " + std::string(detail::kMetaFile));
-
-  auto data = std::make_shared<Data>();
-  detail::Meta meta = detail::read_meta(meta_path, *data);
-  const auto joints = static_cast<std::uint64_t>(data->joints);
-  const auto layouts = detail::array_layouts(meta.positions, meta.cells, meta.size, joints);
-  for (int i = 0; i < detail::kArrayCount; ++i)
-    data->files.push_back(std::make_unique<detail::CheckedFile>(file_in(path, detail::kArrayFiles[i]), layouts[i],
-                                                                std::move(meta.checksums[i])));
-  // The tables are small and are checked now; the configurations when they are first checked.
-  for (int i = 0; i + 1 < detail::kArrayCount; ++i)
-    if (layouts[i].payload_bytes() > 0) data->files[i]->ensure(0, layouts[i].payload_bytes());
-  data->positions = view<std::int32_t>(*data->files[0], 3 * meta.positions);
-  data->position_first = view<std::uint32_t>(*data->files[1], meta.positions + 1);
-  data->rotation_ids = view<std::uint32_t>(*data->files[2], meta.cells);
-  data->cell_first = view<std::uint32_t>(*data->files[3], meta.cells + 1);
-  data->configurations = view<std::uint16_t>(*data->files[4], meta.size * joints);
-  data->configuration_file = data->files[4].get();
-  data->folder = path;
-  if (data->cell_first[meta.cells] != meta.size) refuse(path, "corrupt: the tables contradict each other");
-  check_tables(*data, path);
-  data->complete();
-  check_order(*data, path);
-  check_bounds(*data, path);
-  return ReachDatabase(std::move(data));
+  return detail::load_from_one_folder(path, [&path] { return load_once(path); });
 }
 
 ReachDatabase ReachDatabase::load(const std::string& path, const JointGroup& arm) {

@@ -7,40 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include "mmgrasp/robot/robot.hpp"
-#include "mmgrasp/robot/robot_source.hpp"
+#include "mmgrasp/robot/detail/robot_record.hpp"
 
 namespace mmgrasp {
 
-using GroupStates = std::map<std::string, std::map<std::string, std::map<std::string, double>>>;
 using NamedPairs = std::map<std::pair<std::string, std::string>, DisabledReason>;
-
-/// How an SRDF ties the robot to the world. Kept to be written out again: here the base kind says how the root moves.
-struct VirtualJoint {
-  std::string name, type, parent_frame, child_link;
-};
-
-namespace detail {
-
-/// What is known of a robot and does not depend on how its links and joints are found: by index or by name.
-struct RobotContent {
-  std::string name;
-  BaseKind base = BaseKind::fixed;
-  BaseLimits base_limits;
-  RobotReport report;
-  std::vector<GroupDescription> groups;
-  std::vector<EndEffectorDescription> end_effectors;
-  GroupStates group_states;
-  std::vector<std::string> passive_joints;
-  std::vector<VirtualJoint> virtual_joints;
-  bool has_srdf = false;
-  std::map<std::string, std::string> inertials;  // link -> its <inertial> as XML: nothing here computes with it
-  std::set<std::string> shapes_left_out;  // links whose meshes were not loaded: without shapes here, but not in truth
-  std::vector<UrdfSource> urdfs;          // what it was read from
-  std::vector<AddedLink> added_links;     // and what came from no URDF
-};
-
-}  // namespace detail
 
 struct Robot::Data : detail::RobotContent {
   std::vector<Link> links;  // breadth first; joint i carries link i + 1

@@ -197,7 +197,7 @@ std::string Robot::to_urdf() const {
 std::string Robot::to_srdf() const {
   std::ostringstream out;
   out << "<?xml version=\"1.0\"?>\n<robot" << attribute("name", data_->name) << ">\n";
-  for (const VirtualJoint& joint : data_->virtual_joints)
+  for (const detail::VirtualJoint& joint : data_->virtual_joints)
     out << "  <virtual_joint" << attribute("name", joint.name) << attribute("type", joint.type)
         << attribute("parent_frame", joint.parent_frame) << attribute("child_link", joint.child_link) << "/>\n";
   for (const std::string& joint : data_->passive_joints)

@@ -81,6 +81,10 @@ bool check_motion_shape(const CheckedMotion& motion, int joints, const std::stri
                             " positions and velocities, all finite and at most 1e6"});
       return false;
     }
+    if (i == 0 && motion.times[0] != 0) {
+      faults.push_back({"times", where, "begins at " + text(motion.times[0]) + " s: must be 0, the clock is its own"});
+      return false;
+    }
     if (i > 0 && !(motion.times[i] > motion.times[i - 1])) {
       faults.push_back({"times", where,
                         "time " + std::to_string(i) + " (" + text(motion.times[i]) + " s) does not come after " +

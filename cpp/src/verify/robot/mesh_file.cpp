@@ -6,10 +6,15 @@
 
 #include <array>
 #include <assimp/Importer.hpp>
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <utility>
 #include <vector>
 
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/geometry/detail/checked_dae.hpp"
 
 namespace mmgrasp::verify::detail {
 namespace {
@@ -42,11 +47,40 @@ void add_node(const aiScene& scene, const aiNode& node, const aiMatrix4x4& T_fil
   for (unsigned i = 0; i < node.mNumChildren; ++i) add_node(scene, *node.mChildren[i], T, scale, out);
 }
 
+/// Assimp ends the process when it is to cut such a face into triangles.
+bool has_empty_face(const aiScene& scene) {
+  for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
+    const aiMesh& mesh = *scene.mMeshes[i];
+    for (unsigned k = 0; k < mesh.mNumFaces; ++k)
+      if (mesh.mFaces[k].mNumIndices == 0) return true;
+  }
+  return false;
+}
+
+bool is_dae(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension == ".dae";
+}
+
+std::string content_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
 std::shared_ptr<const TriangleMesh> read_mesh(const std::string& path, const Eigen::Vector3d& scale) {
   Assimp::Importer importer;
   // URDF tools show DAE coordinates as they stand, whatever <up_axis> says.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
-  const aiScene* scene = importer.ReadFile(path, aiProcess_Triangulate);
+  const aiScene* scene = nullptr;
+  if (is_dae(path)) {
+    const std::string text = mmgrasp::detail::checked_dae(path, content_of(path));
+    scene = importer.ReadFileFromMemory(text.data(), text.size(), 0, "dae");
+  } else {
+    scene = importer.ReadFile(path, 0);
+  }
+  if (scene && has_empty_face(*scene)) throw InvalidInput("mesh file '" + path + "': has a face without corners");
+  if (scene) scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
   if (!scene || !scene->mRootNode)
     throw InvalidInput("mesh file '" + path + "': assimp refuses it: " + importer.GetErrorString());
   Triangles triangles;

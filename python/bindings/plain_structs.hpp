@@ -220,13 +220,15 @@ inline constexpr std::size_t kFields<OperationLoad> = 6;
 template <>
 inline constexpr std::size_t kFields<OperationOverlap> = 4;
 template <>
-inline constexpr std::size_t kFields<PlanGrippersResult> = 10;
+inline constexpr std::size_t kFields<PlanGrippersResult> = 12;
+template <>
+inline constexpr std::size_t kFields<RefusedGrasp> = 2;
 template <>
 inline constexpr std::size_t kFields<SegmentFate> = 10;
 template <>
 inline constexpr std::size_t kFields<SegmentedPart> = 2;
 template <>
-inline constexpr std::size_t kFields<SegmentRequirement> = 7;
+inline constexpr std::size_t kFields<SegmentRequirement> = 8;
 template <>
 inline constexpr std::size_t kFields<ContactArea> = 3;
 template <>

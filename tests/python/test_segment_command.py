@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import manifold3d as m3
 import numpy as np
 import pytest
 
@@ -60,6 +61,47 @@ def test_table_names_widths(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
     assert main(["segment", str(write_stl(tmp_path / "part.stl"))]) == 0
     out = capsys.readouterr().out
     assert "box_1" in out and "20.00 (100" in out
+
+
+def write_prism(path: Path, profile: list[tuple[float, float]], length: float, refined: int) -> Path:
+    """A profile [mm] extruded along z, each triangle cut into `refined` squared."""
+    solid = m3.Manifold.extrude(m3.CrossSection([profile]), length).refine(refined).to_mesh()
+    vertices, triangles = np.array(solid.vert_properties)[:, :3], np.array(solid.tri_verts)
+    rows = ["solid part"]
+    for corners in vertices[triangles]:
+        points = "".join(f" vertex {p[0]:.9g} {p[1]:.9g} {p[2]:.9g}" for p in corners)
+        rows.append(f"facet normal 0 0 0 outer loop{points} endloop endfacet")
+    path.write_text("\n".join([*rows, "endsolid part"]) + "\n")
+    return path
+
+
+PROFILES = {
+    "L": ([(0, 0), (60, 0), (60, 5), (5, 5), (5, 40), (0, 40)], [5, 30, 40, 60]),
+    "U": ([(0, 0), (50, 0), (50, 30), (44, 30), (44, 8), (6, 8), (6, 30), (0, 30)], [6, 8, 30, 50]),
+    "T": (
+        [(20, 0), (28, 0), (28, 30), (48, 30), (48, 36), (0, 36), (0, 30), (20, 30)],
+        [6, 8, 30, 48],
+    ),  # its flange and its stem
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "refined"), [("L", 1), ("L", 32), ("U", 1), ("U", 32), ("T", 32)])
+def test_widths_of_profiles_are_those_that_grasps_have(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str, refined: int
+) -> None:
+    """Walls of a profile, its whole widths and the length of its prism, as jaws close on them."""
+    profile, widths = PROFILES[name]
+    part = write_prism(tmp_path / "part.stl", profile, 30, refined)
+    assert main(["segment", str(part), "--unit", "mm", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    mesh, labels, held_by_any = mg.Mesh.load(part, scale=0.001), np.array(found["labels"]), set()
+    for segment in found["segments"]:
+        grasps = mg.gripper_design.jaw_grasps(mesh, list(np.flatnonzero(labels == segment["segment"])))
+        held = {round(1e3 * g.opening, 3) for g in grasps}
+        assert {round(1e3 * w["width"], 3) for w in segment["widths"]} == held
+        held_by_any |= held
+    assert held_by_any == set(widths)
 
 
 @pytest.mark.slow

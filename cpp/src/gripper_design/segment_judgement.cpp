@@ -111,7 +111,6 @@ std::vector<FreeGrasp> undominated(std::vector<FreeGrasp> found) {
 std::string unsuited(const SegmentedPart& segmented, const SegmentFate& fate) {
   if (segmented.segmentation.segments[fate.segment].threaded) return "a screw thread";
   if (fate.fingers == 0) return "a " + fate.kind + ": neither parallel jaws nor centric fingers suit it";
-  if (segmented.primitives[fate.segment].widths.empty()) return "no surface to hold";
   return "";
 }
 

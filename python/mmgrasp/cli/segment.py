@@ -24,6 +24,7 @@ from .output_folder import LIST, OutputFolder
 FORMAT, VERSION = "mmgrasp-segments", 2
 FILES = ("segments.json", "segments.png", "diameters.png", LIST)
 _UNKNOWN_SHARE = 0.2
+_MOST_WIDTHS = 8  # in a row of the table; segments.json has all
 
 
 def run_segment(arguments: argparse.Namespace, console: Console) -> int:
@@ -132,12 +133,17 @@ def _print(content: dict[str, Any], out: Path | None, console: Console) -> None:
     console.print(
         f"{printable(content['mesh'])}: {content['triangles']} triangles, {across} mm", markup=False, soft_wrap=True
     )
-    table = Table(title="segments; sizes in mm, share of a width's contact that is surface in brackets")
+    table = Table(
+        title="segments; sizes in mm; widths to hold, in brackets how much of the size across lies between them"
+    )
     for column in ("no.", "", "name", "size", "thickness", "volume", "widths"):
         table.add_column(column, justify="right" if column in ("no.", "thickness", "volume") else "left")
     for row in content["segments"]:
         ratio = row["volume"] / row["hull_volume"] if row["hull_volume"] > 0 else float("nan")
-        widths = ", ".join(f"{1e3 * w['width']:.2f} ({100 * w['covered']:.0f} %)" for w in row["widths"])
+        listed = [f"{1e3 * w['width']:.2f} ({100 * w['covered']:.0f} %)" for w in row["widths"]]
+        widths = ", ".join(listed[:_MOST_WIDTHS])
+        if len(listed) > _MOST_WIDTHS:
+            widths += f", and {len(listed) - _MOST_WIDTHS} less covered"
         table.add_row(
             str(row["segment"]),
             f"[on {row['colour']}]  [/]",

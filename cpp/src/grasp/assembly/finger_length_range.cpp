@@ -7,11 +7,11 @@
 #include <map>
 #include <utility>
 
-#include "grasp/assembly/clip_polygon.hpp"
 #include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/limits.hpp"
+#include "mmgrasp/geometry/detail/clip_polygon.hpp"
 #include "mmgrasp/grasp/detail/motion_looks.hpp"
 
 namespace mmgrasp {

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <utility>
 
-#include "grasp/assembly/clip_polygon.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/limits.hpp"
+#include "mmgrasp/geometry/detail/clip_polygon.hpp"
 
 namespace mmgrasp {
 namespace {

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <utility>
 
-#include "grasp/assembly/clip_polygon.hpp"
 #include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
+#include "mmgrasp/geometry/detail/clip_polygon.hpp"
 
 namespace mmgrasp::detail {
 namespace {

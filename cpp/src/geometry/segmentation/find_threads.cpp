@@ -7,6 +7,7 @@
 #include <complex>
 #include <map>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include "geometry/segmentation/face_graph.hpp"
@@ -27,6 +28,8 @@ constexpr double kLeastTurns = 2;
 constexpr double kInPhase = 0.3;
 /// Edges this far from the common angle belong to the root [rad].
 constexpr double kPhase = 0.8;
+/// Along a pitch edges in phase go around by this share of a turn at least.
+constexpr double kFullTurn = 0.4;
 /// Pitches looked for, in radii of the root.
 constexpr double kFinest = 0.02, kCoarsest = 1.5;
 /// The pitch is sought in so much of a thread above and below its middle, in radii of the root.
@@ -38,10 +41,14 @@ constexpr double kDirection = 0.35;
 constexpr int kFits = 4;
 /// Cosine to the axis of the normals of faces across it: steeper than the flanks of metric threads.
 constexpr double kAcross = 0.9;
+/// Cosine to the radius of the normals of faces along a shaft: flanks are steeper.
+constexpr double kAlong = 0.94;
 /// Longest chains tried.
 constexpr std::size_t kMostChains = 12;
 /// Depth of a thread from root to crest, in pitches; metric threads have 0.61, square ones 0.5.
 constexpr double kDeepest = 1.0;
+/// Radii of a thread are those that this share of its vertices does not go beyond.
+constexpr double kNearlyAll = 0.98;
 
 /// Noise moves vertices between the ends of a thread out of it by up to so many times what they may be off elsewhere.
 constexpr double kLoose = 3;
@@ -225,6 +232,50 @@ std::optional<std::vector<int>> edges_in_phase(const FaceGraph& graph, const std
   return out;
 }
 
+/// Of edges in phase those of one thread: where they go nearly all around, turn upon turn. A ring at the root's radius,
+/// on a shaft far from the thread, has a quarter of its edges in phase; noise has a few anywhere.
+std::vector<int> edges_of_one_thread(const FaceGraph& graph, const std::vector<int>& edges, const Helix& helix) {
+  struct Edge {
+    double height, turned;  // turned: the angle that it goes around the axis [rad]
+    int number;
+  };
+  std::vector<Edge> sorted;
+  for (const int k : edges) {
+    const FaceBorder& b = graph.borders[k];
+    const Vector3d u = graph.vertices[b.vertices[0]], v = graph.vertices[b.vertices[1]];
+    const Place at = place_at(helix, 0.5 * (u + v));
+    const double turned = std::abs((v - u).dot(helix.axis.cross(at.outward))) / std::max(at.radius, 1e-300);
+    sorted.push_back({at.height, turned, k});
+  }
+  std::sort(sorted.begin(), sorted.end(),
+            [](const Edge& a, const Edge& b) { return std::tie(a.height, a.number) < std::tie(b.height, b.number); });
+  std::vector<double> up_to{0};
+  for (const Edge& e : sorted) up_to.push_back(up_to.back() + e.turned);
+  const double pitch = 2 * kPi * std::abs(helix.pitch_per_radian);
+  const auto first_from = [&](double height) {
+    const auto at =
+        std::lower_bound(sorted.begin(), sorted.end(), height, [](const Edge& e, double h) { return e.height < h; });
+    return static_cast<std::size_t>(at - sorted.begin());
+  };
+  std::vector<std::vector<int>> runs;
+  std::vector<double> lengths;
+  double last = -kInfinity;
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    const double below = up_to[i + 1] - up_to[first_from(sorted[i].height - pitch)];
+    const double above = up_to[first_from(sorted[i].height + pitch)] - up_to[i];
+    if (std::max(below, above) < kFullTurn * 2 * kPi) continue;
+    if (sorted[i].height - last > pitch) {
+      runs.emplace_back();
+      lengths.push_back(0);
+    }
+    last = sorted[i].height;
+    runs.back().push_back(sorted[i].number);
+    lengths.back() += sorted[i].turned;
+  }
+  if (runs.empty()) return {};
+  return runs[std::max_element(lengths.begin(), lengths.end()) - lengths.begin()];
+}
+
 /// Whether the edges run at one radius for long enough.
 bool is_thread_root(const FaceGraph& graph, const std::vector<int>& edges, const Helix& helix, Range& heights,
                     double& radius) {
@@ -288,55 +339,92 @@ std::vector<std::vector<int>> root_chains(const FaceGraph& graph) {
   return chains;
 }
 
-/// The thread around a root: faces no higher or lower than half a pitch beyond it, from the root to the crest.
-std::optional<ScrewThread> thread_around(const FaceGraph& graph, const Helix& helix, const Range& heights,
-                                         double root) {
-  const double pitch = 2 * kPi * std::abs(helix.pitch_per_radian), slack = 0.05 * pitch + 3e-3 * root;
-  const auto faces_between = [&](double low, double high) {
-    std::vector<int> faces;
-    InterruptionPoll poll;
-    for (int f = 0; f < graph.size(); ++f) {
-      poll();
-      double off = 0;  // how far it reaches out of the thread's radii
-      bool inside = true, beyond = false, at_root = true;
-      for (const int v : graph.faces[f]) {
-        const Place at = place_at(helix, graph.vertices[v]);
-        inside = inside && at.height > heights.low - 0.75 * pitch && at.height < heights.high + 0.75 * pitch;
-        off = std::max({off, low - at.radius, at.radius - high});
-        beyond = beyond || at.height < heights.low || at.height > heights.high;
-        at_root = at_root && std::abs(at.radius - root) < slack;
-      }
-      // Between the ends of the root there is nothing but the thread, whose noise may be as large as its faces.
-      if (!inside || off > (beyond ? slack : kLoose * slack)) continue;
-      // Past the ends of the root lie the shaft that the thread ends on and the face of a head or shoulder.
-      if (beyond && (at_root || std::abs(graph.normals[f].dot(helix.axis)) > kAcross)) continue;
-      faces.push_back(f);
-    }
-    return faces;
-  };
-  const auto area_of = [&](const std::vector<int>& faces) {
-    double area = 0;
-    for (const int f : faces) area += graph.areas[f];
-    return area;
-  };
-  const std::vector<int> outside = faces_between(root, root + kDeepest * pitch);
-  const std::vector<int> inside = faces_between(root - kDeepest * pitch, root);
-  const bool external = area_of(outside) >= area_of(inside);
-  // The crest, from vertices between the ends of the root: what nearly all of them reach at most.
-  std::vector<double> depths;
-  for (const int f : external ? outside : inside) {
-    for (const int v : graph.faces[f]) {
-      const Place at = place_at(helix, graph.vertices[v]);
-      if (at.height < heights.low || at.height > heights.high) continue;
-      depths.push_back(external ? at.radius - root : root - at.radius);
+/// How far a face looks away from the axis: the cosine to the radius, negative in a nut.
+double outward(const FaceGraph& graph, int face, const Helix& helix) {
+  return graph.normals[face].dot(place_at(helix, graph.centres[face]).outward);
+}
+
+enum class Among { no, ends, turns };  // `ends`: runs out of the thread's ends.
+
+/// Where a face is of a thread that reaches from one radius to another.
+Among place_among(const FaceGraph& graph, int face, const Helix& helix, const Range& heights, double low, double high) {
+  const double pitch = 2 * kPi * std::abs(helix.pitch_per_radian), slack = 0.05 * pitch + 3e-3 * low;
+  Range radii, along;
+  for (const int v : graph.faces[face]) {
+    const Place at = place_at(helix, graph.vertices[v]);
+    radii.add(at.radius);
+    along.add(at.height);
+  }
+  const double off = std::max(low - radii.low, radii.high - high);  // How far it reaches out of the thread's radii.
+  // Between the ends of the root there is nothing but the thread, whose noise may be as large as its faces.
+  if (along.low >= heights.low && along.high <= heights.high) return off > kLoose * slack ? Among::no : Among::turns;
+  const bool too_far = along.low <= heights.low - 0.75 * pitch || along.high >= heights.high + 0.75 * pitch;
+  // Past the ends of the root lie the shafts that the thread ends on and the face of a head or shoulder.
+  const bool on_a_shaft = radii.high - radii.low < slack && std::abs(outward(graph, face, helix)) > kAlong;
+  const bool across = std::abs(graph.normals[face].dot(helix.axis)) > kAcross;
+  return off > slack || too_far || on_a_shaft || across ? Among::no : Among::ends;
+}
+
+/// Faces from one radius to another between the ends of the root, and what runs on from them by half a pitch.
+std::vector<int> faces_between(const FaceGraph& graph, const Helix& helix, const Range& heights, double low,
+                               double high) {
+  std::vector<Among> among(graph.faces.size());
+  std::vector<int> out;
+  InterruptionPoll poll;
+  for (int f = 0; f < graph.size(); ++f) {
+    poll();
+    among[f] = place_among(graph, f, helix, heights, low, high);
+    if (among[f] == Among::turns) out.push_back(f);
+  }
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    poll();
+    for (int at = graph.first_border[out[i]]; at < graph.first_border[out[i] + 1]; ++at) {
+      const int next = graph.other(graph.border_of[at], out[i]);
+      if (among[next] != Among::ends) continue;
+      among[next] = Among::turns;
+      out.push_back(next);
     }
   }
-  if (depths.empty()) return std::nullopt;
-  const auto last = depths.begin() + static_cast<std::ptrdiff_t>(0.98 * static_cast<double>(depths.size() - 1));
-  std::nth_element(depths.begin(), last, depths.end());
-  const double crest = external ? root + *last : root - *last;
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+/// The radii from which nearly all vertices of a thread do not stand out, down or up. Edges say roughly where they are:
+/// with noise those of a flank may pass for the root's.
+struct ThreadRadii {
+  bool external;
+  double low, high;
+};
+std::optional<ThreadRadii> thread_radii(const FaceGraph& graph, const Helix& helix, const Range& heights, double root) {
+  const double deepest = kDeepest * 2 * kPi * std::abs(helix.pitch_per_radian);
+  const std::vector<int> faces = faces_between(graph, helix, heights, root - deepest, root + deepest);
+  double outwards = 0;
+  for (const int f : faces) outwards += graph.areas[f] * outward(graph, f, helix);
+  std::vector<double> radii;
+  for (const int f : faces) {
+    if (outward(graph, f, helix) * outwards <= 0) continue;  // The bore of a bolt, the outside of a nut.
+    for (const int v : graph.faces[f]) {
+      const Place at = place_at(helix, graph.vertices[v]);
+      if (at.height >= heights.low && at.height <= heights.high) radii.push_back(at.radius);
+    }
+  }
+  if (radii.empty()) return std::nullopt;
+  const auto reached_by = [&](double share) {
+    const auto at = radii.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(radii.size() - 1));
+    std::nth_element(radii.begin(), at, radii.end());
+    return *at;
+  };
+  return ThreadRadii{outwards > 0, reached_by(1 - kNearlyAll), reached_by(kNearlyAll)};
+}
+
+/// The thread around a root: its faces, from the root to the crest.
+std::optional<ScrewThread> thread_around(const FaceGraph& graph, const Helix& helix, const Range& heights,
+                                         double root) {
+  const double pitch = 2 * kPi * std::abs(helix.pitch_per_radian);
+  const std::optional<ThreadRadii> radii = thread_radii(graph, helix, heights, root);
+  if (!radii) return std::nullopt;
   ScrewThread out;
-  out.faces = external ? faces_between(root, crest) : faces_between(crest, root);
+  out.faces = faces_between(graph, helix, heights, radii->low, radii->high);
   if (out.faces.empty()) return std::nullopt;
   Range span;
   for (const int f : out.faces) {
@@ -344,8 +432,8 @@ std::optional<ScrewThread> thread_around(const FaceGraph& graph, const Helix& he
   }
   const bool right_handed = helix.pitch_per_radian > 0;
   out.pitch = right_handed ? pitch : -pitch;
-  out.root_radius = root;
-  out.crest_radius = crest;
+  out.root_radius = radii->external ? radii->low : radii->high;
+  out.crest_radius = radii->external ? radii->high : radii->low;
   if (std::abs(out.crest_radius - out.root_radius) < 0.1 * pitch) return std::nullopt;
   out.length = span.high - span.low;
   out.T_mesh_thread.linear() = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), helix.axis).toRotationMatrix();
@@ -371,9 +459,8 @@ std::vector<ScrewThread> find_threads(const TriangleMesh& mesh) {
   if (chains.size() > kMostChains) chains.resize(kMostChains);
   for (const std::vector<int>& chain : chains) {
     throw_if_interrupted();
-    const auto known = std::count_if(chain.begin(), chain.end(), [&](int k) {
-      return taken[graph.borders[k].first] || taken[graph.borders[k].second];
-    });
+    const auto on_known = [&](int k) { return taken[graph.borders[k].first] || taken[graph.borders[k].second]; };
+    const auto known = std::count_if(chain.begin(), chain.end(), on_known);
     if (2 * known > static_cast<std::ptrdiff_t>(chain.size())) continue;  // another start or piece of the same thread
     std::optional<Helix> helix = fit_helix(graph, chain);
     std::vector<int> along = chain;
@@ -383,17 +470,20 @@ std::vector<ScrewThread> find_threads(const TriangleMesh& mesh) {
     }
     if (!helix) continue;
     refine_axis(graph, along, *helix);
-    const std::optional<std::vector<int>> turns = edges_in_phase(graph, along, *helix);
-    if (!turns) continue;
-    refine_axis(graph, *turns, *helix);
+    const std::optional<std::vector<int>> in_phase = edges_in_phase(graph, along, *helix);
+    if (!in_phase) continue;
+    const std::vector<int> turns = edges_of_one_thread(graph, *in_phase, *helix);
+    if (turns.empty()) continue;
+    refine_axis(graph, turns, *helix);
     Range heights;
     double root = 0;
-    if (!is_thread_root(graph, *turns, *helix, heights, root)) continue;
+    if (!is_thread_root(graph, turns, *helix, heights, root)) continue;
     std::optional<ScrewThread> thread = thread_around(graph, *helix, heights, root);
     if (!thread) continue;
     const auto again = std::count_if(thread->faces.begin(), thread->faces.end(), [&](int f) { return taken[f] != 0; });
     if (2 * again > static_cast<std::ptrdiff_t>(thread->faces.size())) continue;
     for (const int f : thread->faces) taken[f] = 1;
+    roots.erase(std::remove_if(roots.begin(), roots.end(), on_known), roots.end());
     out.push_back(std::move(*thread));
   }
   return out;

@@ -1,9 +1,11 @@
 #include <cmath>
 #include <sstream>
+#include <tuple>
 
 #include "bindings.hpp"
 #include "given.hpp"
-#include "mmgrasp/geometry/detail/inside_out.hpp"
+#include "mmgrasp/geometry/detail/mesh_faults.hpp"
+#include "mmgrasp/geometry/detail/separate_bodies.hpp"
 #include "mmgrasp/geometry/fit_primitives.hpp"
 #include "mmgrasp/geometry/segment_mesh.hpp"
 #include "mmgrasp/geometry/shape_diameter.hpp"
@@ -185,11 +187,20 @@ void bind_segment_mesh(py::module_& m) {
       });
   m.def("_shape_diameter_option_table", [] { return option_table(diameter_fields()); });
   m.def(
-      "_file_is_inside_out",
-      [](const PathLike& path) {
-        return interruptible([file = path_argument(path, "path")] { return detail::file_is_inside_out(file); });
+      "_mesh_with_faults",
+      [](const PathLike& path, const Given<double>& scale) {
+        const auto [mesh, faults, bodies] =
+            interruptible([file = path_argument(path, "path"), metres = taken(scale, "scale")] {
+              detail::MeshFaults found;
+              const auto read = detail::load_mesh(file, Eigen::Vector3d::Constant(metres), found);
+              return std::make_tuple(read, found, detail::count_bodies(*read));
+            });
+        return py::make_tuple(
+            MeshShape{mesh},
+            py::dict("inside_out"_a = faults.inside_out, "turned_triangles"_a = faults.turned_triangles,
+                     "repeated_triangles"_a = faults.repeated_triangles, "bodies"_a = bodies));
       },
-      "path"_a);
+      "path"_a, "scale"_a = 1.0);
   m.def("_mesh_segmentation_option_table", [] { return option_table(mesh_segmentation_fields()); });
   m.def(
       "shape_diameters",

@@ -14,6 +14,7 @@ from rich.table import Table
 from .. import _core
 from .._core import InvalidInput
 from .._files import printable, write_file
+from ..grippers.part_mesh import load_part_mesh
 from ..grippers.part_size import UNITS, wrong_size
 from ..scan.objects import pose_to_dict
 from ..viz.style import segment_colour
@@ -32,13 +33,13 @@ def run_segment(arguments: argparse.Namespace, console: Console) -> int:
     folder = None if arguments.out is None else OutputFolder(arguments.out, FILES)
     with Reporter(console) as report:
         report("reading", 0.0)
-        mesh = _core.Mesh.load(str(arguments.mesh), scale=UNITS[arguments.unit])
+        mesh, faults = load_part_mesh(str(arguments.mesh), UNITS[arguments.unit])
         points = mesh.vertices
         size = np.ptp(points, axis=0)
         _check_size(arguments, float(np.linalg.norm(size)))
         found = _core.segment_mesh(mesh, seed=arguments.seed, threads=arguments.threads, progress=report)
         primitives = _core.fit_primitives(mesh, found.labels, threads=found.threads, progress=report)
-        content = segments_to_dict(arguments, mesh, size, found, primitives)
+        content = segments_to_dict(arguments, mesh, size, found, primitives, faults)
         if folder is not None:
             report("writing", 0.0)
             text = json.dumps(content, indent=1, allow_nan=False) + "\n"
@@ -61,7 +62,9 @@ def _check_size(arguments: argparse.Namespace, diagonal: float) -> None:
     rule = wrong_size(diagonal, arguments.unit)
     if rule:
         file = printable(str(arguments.mesh))
-        raise InvalidInput(f"{file}: would be {diagonal:.4g} m across with --unit {arguments.unit}; {rule}")
+        raise InvalidInput(
+            f"{file}: would be {diagonal:.4g} m from corner to corner with --unit {arguments.unit}; {rule}"
+        )
 
 
 def segments_to_dict(
@@ -70,13 +73,13 @@ def segments_to_dict(
     size: np.ndarray,
     found: _core.MeshSegmentation,
     primitives: list[_core.FittedPrimitive],
+    faults: list[str],
 ) -> dict[str, Any]:
-    """What segments.json holds: SI units."""
+    """What segments.json holds: SI units. `faults`: notes on the file's mesh."""
     notes = []
     if not mesh.closed:
         notes.append("the mesh is open: walls around its gaps may be joined wrongly")
-    if found.turned or (mesh.closed and _core._file_is_inside_out(str(arguments.mesh))):
-        notes.append("the mesh was inside out: its faces were turned")
+    notes += faults
     unknown = float(np.mean(found.diameters == 0))
     if unknown > _UNKNOWN_SHARE:
         notes.append(f"{100 * unknown:.0f} % of the faces have nothing behind them: the mesh may be a sheet")

@@ -12,6 +12,7 @@
 
 #include "geometry/segmentation/face_graph.hpp"
 #include "geometry/segmentation/refine_models.hpp"
+#include "geometry/segmentation/thread_faces.hpp"
 #include "geometry/segmentation/unwinding.hpp"
 #include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
@@ -39,24 +40,8 @@ constexpr double kRadius = 0.15;
 /// Edges that differ more in direction from the helix are left out of its fit: the sine of the angle.
 constexpr double kDirection = 0.35;
 constexpr int kFits = 4;
-/// Cosine to the axis of the normals of faces across it: steeper than the flanks of metric threads.
-constexpr double kAcross = 0.9;
-/// Cosine to the radius of the normals of faces along a shaft: flanks are steeper.
-constexpr double kAlong = 0.94;
 /// Longest chains tried.
 constexpr std::size_t kMostChains = 12;
-/// Depth of a thread from root to crest, in pitches; metric threads have 0.61, square ones 0.5.
-constexpr double kDeepest = 1.0;
-/// Radii of a thread are those that this share of its vertices does not go beyond.
-constexpr double kNearlyAll = 0.98;
-
-/// Noise moves vertices between the ends of a thread out of it by up to so many times what they may be off elsewhere.
-constexpr double kLoose = 3;
-
-struct Helix {
-  Vector3d axis = Vector3d::UnitZ(), point = Vector3d::Zero();
-  double pitch_per_radian = 0;  ///< Along the axis [m/rad].
-};
 
 /// The screw motion along which the edges run: each edge e at x is parallel to moment + axis x x (least squares over
 /// the six coordinates, edges weighted by their length).
@@ -100,30 +85,6 @@ std::optional<Helix> fit_helix(const FaceGraph& graph, const std::vector<int>& c
   out.point = middle + size * axis.cross(moment) / axis.squaredNorm();
   return out;
 }
-
-/// Height, radius and direction from the axis of a point in a helix' frame.
-struct Place {
-  double height, radius;
-  Vector3d outward;
-};
-
-Place place_at(const Helix& helix, const Vector3d& x) {
-  const Vector3d d = x - helix.point;
-  Place out;
-  out.height = d.dot(helix.axis);
-  const Vector3d radial = d - out.height * helix.axis;
-  out.radius = radial.norm();
-  out.outward = out.radius > 0 ? Vector3d(radial / out.radius) : Vector3d::Zero();
-  return out;
-}
-
-struct Range {
-  double low = kInfinity, high = -kInfinity;
-  void add(double x) {
-    low = std::min(low, x);
-    high = std::max(high, x);
-  }
-};
 
 /// Turns and moves the axis so that the chain's vertices lie at one distance from it.
 void refine_axis(const FaceGraph& graph, const std::vector<int>& chain, Helix& helix) {
@@ -173,7 +134,7 @@ std::vector<int> edges_along(const FaceGraph& graph, const std::vector<int>& all
     poll();
     const FaceBorder& b = graph.borders[k];
     const Vector3d u = graph.vertices[b.vertices[0]], v = graph.vertices[b.vertices[1]];
-    const Place at = place_at(helix, 0.5 * (u + v));
+    const HelixPlace at = place_at(helix, 0.5 * (u + v));
     const Vector3d motion = helix.axis.cross(at.outward) * at.radius + helix.pitch_per_radian * helix.axis;
     if (b.length <= 0 || motion.norm() <= 0 || std::abs(at.radius - median) > reach) continue;
     if (((v - u) / b.length).cross(motion.normalized()).norm() < kDirection) out.push_back(k);
@@ -187,10 +148,10 @@ std::optional<std::vector<int>> edges_in_phase(const FaceGraph& graph, const std
   const Vector3d side = helix.axis.unitOrthogonal(), across = helix.axis.cross(side);
   std::vector<HelixTurn> turns;
   double length = 0, radius = 0;
-  Range heights;
+  HelixSpan heights;
   for (const int k : edges) {
     const FaceBorder& b = graph.borders[k];
-    const Place at = place_at(helix, 0.5 * (graph.vertices[b.vertices[0]] + graph.vertices[b.vertices[1]]));
+    const HelixPlace at = place_at(helix, 0.5 * (graph.vertices[b.vertices[0]] + graph.vertices[b.vertices[1]]));
     turns.push_back({std::atan2(at.outward.dot(across), at.outward.dot(side)), at.height, b.length, k});
     length += b.length;
     radius += b.length * at.radius;
@@ -202,7 +163,7 @@ std::optional<std::vector<int>> edges_in_phase(const FaceGraph& graph, const std
   // may with noise.
   const double middle = (heights.low + heights.high) / 2;
   std::vector<HelixTurn> near;
-  Range looked_at;
+  HelixSpan looked_at;
   length = 0;
   for (const HelixTurn& t : turns) {
     if (std::abs(t.height - middle) > kLookedAt * radius) continue;
@@ -235,26 +196,27 @@ std::optional<std::vector<int>> edges_in_phase(const FaceGraph& graph, const std
 /// Of edges in phase those of one thread: where they go nearly all around, turn upon turn. A ring at the root's radius,
 /// on a shaft far from the thread, has a quarter of its edges in phase; noise has a few anywhere.
 std::vector<int> edges_of_one_thread(const FaceGraph& graph, const std::vector<int>& edges, const Helix& helix) {
-  struct Edge {
+  struct RootEdge {
     double height, turned;  // turned: the angle that it goes around the axis [rad]
     int number;
   };
-  std::vector<Edge> sorted;
+  std::vector<RootEdge> sorted;
   for (const int k : edges) {
     const FaceBorder& b = graph.borders[k];
     const Vector3d u = graph.vertices[b.vertices[0]], v = graph.vertices[b.vertices[1]];
-    const Place at = place_at(helix, 0.5 * (u + v));
+    const HelixPlace at = place_at(helix, 0.5 * (u + v));
     const double turned = std::abs((v - u).dot(helix.axis.cross(at.outward))) / std::max(at.radius, 1e-300);
     sorted.push_back({at.height, turned, k});
   }
-  std::sort(sorted.begin(), sorted.end(),
-            [](const Edge& a, const Edge& b) { return std::tie(a.height, a.number) < std::tie(b.height, b.number); });
+  std::sort(sorted.begin(), sorted.end(), [](const RootEdge& a, const RootEdge& b) {
+    return std::tie(a.height, a.number) < std::tie(b.height, b.number);
+  });
   std::vector<double> up_to{0};
-  for (const Edge& e : sorted) up_to.push_back(up_to.back() + e.turned);
+  for (const RootEdge& e : sorted) up_to.push_back(up_to.back() + e.turned);
   const double pitch = 2 * kPi * std::abs(helix.pitch_per_radian);
   const auto first_from = [&](double height) {
-    const auto at =
-        std::lower_bound(sorted.begin(), sorted.end(), height, [](const Edge& e, double h) { return e.height < h; });
+    const auto at = std::lower_bound(sorted.begin(), sorted.end(), height,
+                                     [](const RootEdge& e, double h) { return e.height < h; });
     return static_cast<std::size_t>(at - sorted.begin());
   };
   std::vector<std::vector<int>> runs;
@@ -277,13 +239,13 @@ std::vector<int> edges_of_one_thread(const FaceGraph& graph, const std::vector<i
 }
 
 /// Whether the edges run at one radius for long enough.
-bool is_thread_root(const FaceGraph& graph, const std::vector<int>& edges, const Helix& helix, Range& heights,
+bool is_thread_root(const FaceGraph& graph, const std::vector<int>& edges, const Helix& helix, HelixSpan& heights,
                     double& radius) {
   double length = 0, turned = 0, mean = 0, square = 0;
   for (const int k : edges) {
     const FaceBorder& b = graph.borders[k];
     const Vector3d u = graph.vertices[b.vertices[0]], v = graph.vertices[b.vertices[1]];
-    const Place at = place_at(helix, 0.5 * (u + v));
+    const HelixPlace at = place_at(helix, 0.5 * (u + v));
     if (at.radius <= 0) continue;
     length += b.length;
     turned += std::abs((v - u).dot(helix.axis.cross(at.outward))) / at.radius;
@@ -339,108 +301,6 @@ std::vector<std::vector<int>> root_chains(const FaceGraph& graph) {
   return chains;
 }
 
-/// How far a face looks away from the axis: the cosine to the radius, negative in a nut.
-double outward(const FaceGraph& graph, int face, const Helix& helix) {
-  return graph.normals[face].dot(place_at(helix, graph.centres[face]).outward);
-}
-
-enum class Among { no, ends, turns };  // `ends`: runs out of the thread's ends.
-
-/// Where a face is of a thread that reaches from one radius to another.
-Among place_among(const FaceGraph& graph, int face, const Helix& helix, const Range& heights, double low, double high) {
-  const double pitch = 2 * kPi * std::abs(helix.pitch_per_radian), slack = 0.05 * pitch + 3e-3 * low;
-  Range radii, along;
-  for (const int v : graph.faces[face]) {
-    const Place at = place_at(helix, graph.vertices[v]);
-    radii.add(at.radius);
-    along.add(at.height);
-  }
-  const double off = std::max(low - radii.low, radii.high - high);  // How far it reaches out of the thread's radii.
-  // Between the ends of the root there is nothing but the thread, whose noise may be as large as its faces.
-  if (along.low >= heights.low && along.high <= heights.high) return off > kLoose * slack ? Among::no : Among::turns;
-  const bool too_far = along.low <= heights.low - 0.75 * pitch || along.high >= heights.high + 0.75 * pitch;
-  // Past the ends of the root lie the shafts that the thread ends on and the face of a head or shoulder.
-  const bool on_a_shaft = radii.high - radii.low < slack && std::abs(outward(graph, face, helix)) > kAlong;
-  const bool across = std::abs(graph.normals[face].dot(helix.axis)) > kAcross;
-  return off > slack || too_far || on_a_shaft || across ? Among::no : Among::ends;
-}
-
-/// Faces from one radius to another between the ends of the root, and what runs on from them by half a pitch.
-std::vector<int> faces_between(const FaceGraph& graph, const Helix& helix, const Range& heights, double low,
-                               double high) {
-  std::vector<Among> among(graph.faces.size());
-  std::vector<int> out;
-  InterruptionPoll poll;
-  for (int f = 0; f < graph.size(); ++f) {
-    poll();
-    among[f] = place_among(graph, f, helix, heights, low, high);
-    if (among[f] == Among::turns) out.push_back(f);
-  }
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    poll();
-    for (int at = graph.first_border[out[i]]; at < graph.first_border[out[i] + 1]; ++at) {
-      const int next = graph.other(graph.border_of[at], out[i]);
-      if (among[next] != Among::ends) continue;
-      among[next] = Among::turns;
-      out.push_back(next);
-    }
-  }
-  std::sort(out.begin(), out.end());
-  return out;
-}
-
-/// The radii from which nearly all vertices of a thread do not stand out, down or up. Edges say roughly where they are:
-/// with noise those of a flank may pass for the root's.
-struct ThreadRadii {
-  bool external;
-  double low, high;
-};
-std::optional<ThreadRadii> thread_radii(const FaceGraph& graph, const Helix& helix, const Range& heights, double root) {
-  const double deepest = kDeepest * 2 * kPi * std::abs(helix.pitch_per_radian);
-  const std::vector<int> faces = faces_between(graph, helix, heights, root - deepest, root + deepest);
-  double outwards = 0;
-  for (const int f : faces) outwards += graph.areas[f] * outward(graph, f, helix);
-  std::vector<double> radii;
-  for (const int f : faces) {
-    if (outward(graph, f, helix) * outwards <= 0) continue;  // The bore of a bolt, the outside of a nut.
-    for (const int v : graph.faces[f]) {
-      const Place at = place_at(helix, graph.vertices[v]);
-      if (at.height >= heights.low && at.height <= heights.high) radii.push_back(at.radius);
-    }
-  }
-  if (radii.empty()) return std::nullopt;
-  const auto reached_by = [&](double share) {
-    const auto at = radii.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(radii.size() - 1));
-    std::nth_element(radii.begin(), at, radii.end());
-    return *at;
-  };
-  return ThreadRadii{outwards > 0, reached_by(1 - kNearlyAll), reached_by(kNearlyAll)};
-}
-
-/// The thread around a root: its faces, from the root to the crest.
-std::optional<ScrewThread> thread_around(const FaceGraph& graph, const Helix& helix, const Range& heights,
-                                         double root) {
-  const double pitch = 2 * kPi * std::abs(helix.pitch_per_radian);
-  const std::optional<ThreadRadii> radii = thread_radii(graph, helix, heights, root);
-  if (!radii) return std::nullopt;
-  ScrewThread out;
-  out.faces = faces_between(graph, helix, heights, radii->low, radii->high);
-  if (out.faces.empty()) return std::nullopt;
-  Range span;
-  for (const int f : out.faces) {
-    for (const int v : graph.faces[f]) span.add(place_at(helix, graph.vertices[v]).height);
-  }
-  const bool right_handed = helix.pitch_per_radian > 0;
-  out.pitch = right_handed ? pitch : -pitch;
-  out.root_radius = radii->external ? radii->low : radii->high;
-  out.crest_radius = radii->external ? radii->high : radii->low;
-  if (std::abs(out.crest_radius - out.root_radius) < 0.1 * pitch) return std::nullopt;
-  out.length = span.high - span.low;
-  out.T_mesh_thread.linear() = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), helix.axis).toRotationMatrix();
-  out.T_mesh_thread.translation() = helix.point + 0.5 * (span.low + span.high) * helix.axis;
-  return out;
-}
-
 }  // namespace
 
 std::vector<ScrewThread> find_threads(const TriangleMesh& mesh) {
@@ -475,7 +335,7 @@ std::vector<ScrewThread> find_threads(const TriangleMesh& mesh) {
     const std::vector<int> turns = edges_of_one_thread(graph, *in_phase, *helix);
     if (turns.empty()) continue;
     refine_axis(graph, turns, *helix);
-    Range heights;
+    HelixSpan heights;
     double root = 0;
     if (!is_thread_root(graph, turns, *helix, heights, root)) continue;
     std::optional<ScrewThread> thread = thread_around(graph, *helix, heights, root);

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <unordered_map>
 #include <utility>
@@ -13,6 +14,8 @@
 namespace mmgrasp::detail {
 
 namespace {
+
+constexpr double kNoVolume = 1e-15;  // Of the cube of the diagonal: rounding.
 
 using Triangles = std::vector<std::array<int, 3>>;
 
@@ -98,14 +101,28 @@ Triangles without_repeats(const Triangles& triangles) {
   return kept;
 }
 
-/// Whether the triangles bound a solid once each is there only once; then they are what is left, and oriented.
+/// Whether the triangles bound a solid; then they are oriented. Two coincident sheets are closed edge by edge but bound
+/// nothing.
+bool close(const std::vector<Eigen::Vector3d>& vertices, Triangles& triangles) {
+  Triangles oriented = triangles;
+  if (!orient_closed(vertices, oriented)) return false;
+  Eigen::AlignedBox3d bounds;
+  for (const Eigen::Vector3d& v : vertices) bounds.extend(v);
+  double six = 0;  // volumes
+  for (const auto& t : oriented) {
+    const Eigen::Vector3d &a = vertices[t[0]], &o = vertices[0];
+    six += (a - o).dot((vertices[t[1]] - o).cross(vertices[t[2]] - o));
+  }
+  if (!(six > 6 * kNoVolume * std::pow(bounds.diagonal().norm(), 3))) return false;
+  triangles = std::move(oriented);
+  return true;
+}
+
+/// Whether the triangles bound a solid once each is there only once; then they are what is left.
 bool close_without_repeats(const std::vector<Eigen::Vector3d>& vertices, Triangles& triangles) {
-  TriangleMesh once;
-  once.triangles = without_repeats(triangles);
-  if (once.triangles.size() == triangles.size() || !orient_closed(vertices, once.triangles)) return false;
-  once.vertices = vertices;
-  if (!(mesh_volume(once) > 0)) return false;
-  triangles = std::move(once.triangles);
+  Triangles once = without_repeats(triangles);
+  if (once.size() == triangles.size() || !close(vertices, once)) return false;
+  triangles = std::move(once);
   return true;
 }
 
@@ -157,7 +174,7 @@ int count_turned(const Triangles& file, const Triangles& triangles) {
 /// neighbours are turned, which may make them one after all.
 bool mend_open(const std::vector<Eigen::Vector3d>& vertices, Triangles& triangles) {
   drop_copies(triangles);
-  return orient_open(vertices, triangles) && orient_closed(vertices, triangles);
+  return orient_open(vertices, triangles) && close(vertices, triangles);
 }
 
 }  // namespace
@@ -181,21 +198,19 @@ std::shared_ptr<const TriangleMesh> clean_mesh(RawMesh raw, const std::string& s
   // A file may hold each face twice, from either side. Faces that two solids share are no repeats: both stay where one
   // of them would leave the solids open.
   const Triangles file = faults == nullptr ? Triangles{} : triangles;
-  mesh->closed = close_without_repeats(mesh->vertices, triangles) || orient_closed(mesh->vertices, triangles) ||
+  mesh->closed = close_without_repeats(mesh->vertices, triangles) || close(mesh->vertices, triangles) ||
                  mend_open(mesh->vertices, triangles);
   if (faults != nullptr) faults->repeated_triangles = static_cast<int>(file.size() - triangles.size());
   triangles.erase(
       std::remove_if(triangles.begin(), triangles.end(), [&](const auto& t) { return has_no_area(mesh->vertices, t); }),
       triangles.end());
-  if (!mesh->closed) mesh->closed = orient_closed(mesh->vertices, triangles);
+  if (!mesh->closed) mesh->closed = close(mesh->vertices, triangles);
   if (faults != nullptr) {
     faults->turned_triangles = count_turned(file, triangles);
     faults->inside_out = mesh->closed ? faults->turned_triangles == static_cast<int>(triangles.size())
                                       : faces_inwards(mesh->vertices, triangles);
   }
   drop_unused_vertices(mesh->vertices, triangles);
-  // Two coincident sheets are closed edge by edge but bound nothing.
-  if (mesh->closed && !(mesh_volume(*mesh) > 0)) mesh->closed = false;
   if (mesh->closed && !triangles.empty()) mesh->convex = is_convex(*mesh);
 
   found.degenerate_triangles = static_cast<int>(triangles_read - triangles.size());

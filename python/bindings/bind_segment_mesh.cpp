@@ -148,7 +148,8 @@ void bind_fitted_primitives(py::module_& m) {
       "The cylinder, box, cone or sphere that stands for each segment of a mesh: the one whose volume is closest to "
       "that "
       "of\nthe segment's convex hull, of those with surface on them (P1, section 5.2.2). `labels` (m,): the segment of "
-      "each face, as\nMeshSegmentation.labels. Inner walls are never offered for grasping; a box is held by the facets "
+      "each face, as\nMeshSegmentation.labels. Round inner walls are never offered for grasping; a box is held by the "
+      "facets "
       "that "
       "`jaw_grasps` takes,\nwhich lie opposite each other over `min_contact` [m] or more. `threads`:\nthose of "
       "MeshSegmentation, which count as the cylinder through their crests. "
@@ -195,10 +196,8 @@ void bind_segment_mesh(py::module_& m) {
               const auto read = detail::load_mesh(file, Eigen::Vector3d::Constant(metres), found);
               return std::make_tuple(read, found, detail::count_bodies(*read));
             });
-        return py::make_tuple(
-            MeshShape{mesh},
-            py::dict("inside_out"_a = faults.inside_out, "turned_triangles"_a = faults.turned_triangles,
-                     "repeated_triangles"_a = faults.repeated_triangles, "bodies"_a = bodies));
+        return std::tuple<MeshShape, bool, int, int, int>(MeshShape{mesh}, faults.inside_out, faults.turned_triangles,
+                                                          faults.repeated_triangles, bodies);
       },
       "path"_a, "scale"_a = 1.0);
   m.def("_mesh_segmentation_option_table", [] { return option_table(mesh_segmentation_fields()); });

@@ -75,7 +75,7 @@ def write_prism(path: Path, profile: list[tuple[float, float]], length: float, r
     return path
 
 
-PROFILES = {
+PROFILES: dict[str, tuple[list[tuple[float, float]], list[float]]] = {
     "L": ([(0, 0), (60, 0), (60, 5), (5, 5), (5, 40), (0, 40)], [5, 30, 40, 60]),
     "U": ([(0, 0), (50, 0), (50, 30), (44, 30), (44, 8), (6, 8), (6, 30), (0, 30)], [6, 8, 30, 50]),
     "T": (

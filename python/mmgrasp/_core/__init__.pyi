@@ -7010,7 +7010,7 @@ def _manipulation_option_table() -> dict[str, typing.Any]:
     ...
 def _mesh_segmentation_option_table() -> dict[str, typing.Any]:
     ...
-def _mesh_with_faults(path: str | os.PathLike[str], scale: float = 1.0) -> tuple[Mesh, dict]:
+def _mesh_with_faults(path: str | os.PathLike[str], scale: float = 1.0) -> tuple[Mesh, bool, int, int, int]:
     ...
 def _minimal_grippers_option_table() -> dict[str, typing.Any]:
     ...
@@ -7243,7 +7243,7 @@ def fit_primitives(mesh: Mesh, labels: numpy.typing.ArrayLike, *, threads: colle
     """
     The cylinder, box, cone or sphere that stands for each segment of a mesh: the one whose volume is closest to that of
     the segment's convex hull, of those with surface on them (P1, section 5.2.2). `labels` (m,): the segment of each face, as
-    MeshSegmentation.labels. Inner walls are never offered for grasping; a box is held by the facets that `jaw_grasps` takes,
+    MeshSegmentation.labels. Round inner walls are never offered for grasping; a box is held by the facets that `jaw_grasps` takes,
     which lie opposite each other over `min_contact` [m] or more. `threads`:
     those of MeshSegmentation, which count as the cylinder through their crests. Raises InvalidInput when there is not one label
     >= 0 a face, or for threads of other meshes.

@@ -10,20 +10,20 @@ from .._core import Mesh
 
 def load_part_mesh(path: str | os.PathLike[str], scale: float) -> tuple[Mesh, list[str]]:
     """The mesh of a file [m], and a note for each fault of it but that it is open (`Mesh.closed`)."""
-    mesh, faults = _core._mesh_with_faults(path, scale)
+    mesh, inside_out, turned, repeated, bodies = _core._mesh_with_faults(path, scale)
     notes = []
-    if faults["repeated_triangles"]:
-        notes.append(f"the mesh has {_faces(faults['repeated_triangles'])} twice: one of each was left out")
-    if faults["inside_out"]:
+    if repeated:
+        notes.append(f"the mesh has {_faces(repeated)} twice: one of each was left out")
+    if inside_out:
         notes.append("the mesh was inside out: its faces were turned")
-    elif faults["turned_triangles"]:
+    elif turned:
         notes.append(
-            f"{_faces(faults['turned_triangles'])} of {len(mesh.triangles):,} looked another way than the rest of the mesh: "
+            f"{_faces(turned)} of {len(mesh.triangles):,} looked another way than the rest of the mesh: "
             "they were turned"
         )
-    if faults["bodies"] > 1:
+    if bodies > 1:
         notes.append(
-            f"the mesh is of {faults['bodies']:,} bodies that do not touch: they are taken to be joined rigidly; give each a "
+            f"the mesh is of {bodies:,} bodies that do not touch: they are taken to be joined rigidly; give each a "
             "mesh of its own if they are not"
         )
     return mesh, notes

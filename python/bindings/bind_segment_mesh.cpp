@@ -1,9 +1,11 @@
 #include <cmath>
 #include <sstream>
+#include <tuple>
 
 #include "bindings.hpp"
 #include "given.hpp"
-#include "mmgrasp/geometry/detail/inside_out.hpp"
+#include "mmgrasp/geometry/detail/mesh_faults.hpp"
+#include "mmgrasp/geometry/detail/separate_bodies.hpp"
 #include "mmgrasp/geometry/fit_primitives.hpp"
 #include "mmgrasp/geometry/segment_mesh.hpp"
 #include "mmgrasp/geometry/shape_diameter.hpp"
@@ -93,8 +95,10 @@ void bind_fitted_primitives(py::module_& m) {
       .def_property_readonly(
           "axis", [](const GraspWidth& w) { return Eigen::Vector3d(w.axis); },
           "Closing direction of a box, axis of a round wall (3,): a unit vector in the mesh's frame.")
-      .def_readonly("covered", &GraspWidth::covered,
-                    "Share of the box' faces (the lesser of the two) or of the turn around the wall that is surface.")
+      .def_readonly(
+          "covered", &GraspWidth::covered,
+          "Share of the box' shadow along the axis on which facets lie opposite each other, or of the turn around "
+          "the wall that is surface.")
       .def("__repr__",
            [](const GraspWidth& w) { return "GraspWidth(" + millimetres(w.width) + " along " + text(w.axis) + ")"; });
   using F = FittedPrimitive;
@@ -121,7 +125,8 @@ void bind_fitted_primitives(py::module_& m) {
   m.def(
       "fit_primitives",
       [](const MeshShape& mesh, const ArrayLike& labels, const Given<std::vector<ScrewThread>>& threads,
-         const Progress& progress) {
+         const Given<double>& min_contact, const Progress& progress) {
+        const double contact = taken(min_contact, "min_contact");
         const Eigen::VectorXd values = vector_argument(labels, "labels");
         const std::size_t faces = mesh.mesh->triangles.size();
         if (static_cast<std::size_t>(values.size()) != faces)
@@ -135,14 +140,19 @@ void bind_fitted_primitives(py::module_& m) {
         }
         const auto smoothed = taken(threads, "threads", "ScrewThread");
         LongCall call(progress);
-        return call.run([&](const Monitor& monitor) { return fit_primitives(*mesh.mesh, numbers, smoothed, monitor); });
+        return call.run(
+            [&](const Monitor& monitor) { return fit_primitives(*mesh.mesh, numbers, smoothed, monitor, contact); });
       },
-      "mesh"_a, "labels"_a, py::kw_only(), "threads"_a = py::list(), "progress"_a = py::none(),
+      "mesh"_a, "labels"_a, py::kw_only(), "threads"_a = py::list(),
+      "min_contact"_a = OppositeFacetsOptions{}.min_contact, "progress"_a = py::none(),
       "The cylinder, box, cone or sphere that stands for each segment of a mesh: the one whose volume is closest to "
       "that "
       "of\nthe segment's convex hull, of those with surface on them (P1, section 5.2.2). `labels` (m,): the segment of "
-      "each face, as\nMeshSegmentation.labels. Inner walls are never offered for grasping, nor are sides of a box with "
-      "nothing on them. `threads`:\nthose of MeshSegmentation, which count as the cylinder through their crests. "
+      "each face, as\nMeshSegmentation.labels. Round inner walls are never offered for grasping; a box is held by the "
+      "facets "
+      "that "
+      "`jaw_grasps` takes,\nwhich lie opposite each other over `min_contact` [m] or more. `threads`:\nthose of "
+      "MeshSegmentation, which count as the cylinder through their crests. "
       "Raises InvalidInput when there is not one "
       "label\n>= 0 a face, or for threads of other meshes.");
   m.def(
@@ -178,11 +188,18 @@ void bind_segment_mesh(py::module_& m) {
       });
   m.def("_shape_diameter_option_table", [] { return option_table(diameter_fields()); });
   m.def(
-      "_file_is_inside_out",
-      [](const PathLike& path) {
-        return interruptible([file = path_argument(path, "path")] { return detail::file_is_inside_out(file); });
+      "_mesh_with_faults",
+      [](const PathLike& path, const Given<double>& scale) {
+        const auto [mesh, faults, bodies] =
+            interruptible([file = path_argument(path, "path"), metres = taken(scale, "scale")] {
+              detail::MeshFaults found;
+              const auto read = detail::load_mesh(file, Eigen::Vector3d::Constant(metres), found);
+              return std::make_tuple(read, found, detail::count_bodies(*read));
+            });
+        return std::tuple<MeshShape, bool, int, int, int>(MeshShape{mesh}, faults.inside_out, faults.turned_triangles,
+                                                          faults.repeated_triangles, bodies);
       },
-      "path"_a);
+      "path"_a, "scale"_a = 1.0);
   m.def("_mesh_segmentation_option_table", [] { return option_table(mesh_segmentation_fields()); });
   m.def(
       "shape_diameters",

@@ -75,7 +75,7 @@ def box(size: tuple[float, float, float], low: tuple[float, float, float]) -> tu
     return solid, lambda p: np.all((p > np.array(low)) & (p < np.array(low) + size), axis=1)
 
 
-def thread(crest: float, root: float, pitch: float, low: float, high: float) -> tuple[m3.Manifold, Inside]:
+def screw(crest: float, root: float, pitch: float, low: float, high: float) -> tuple[m3.Manifold, Inside]:
     """A right-handed screw thread of a trapezoidal profile, as a twisted cross-section."""
     turn = np.arange(SEGMENTS) / SEGMENTS
     height = np.interp(turn, [0, 0.125, 0.5, 0.625, 1], [1, 1, 0, 0, 1])
@@ -125,7 +125,7 @@ def stepped_shaft(rng: np.random.Generator, bore: bool, fillets: bool, threaded:
         heights.append(z)
     if threaded:
         crest = max(4.0, radii[-1] * 0.7)
-        part.add(*thread(crest, crest - 0.9, 1.5, z, z + 12), 2 * crest)
+        part.add(*screw(crest, crest - 0.9, 1.5, z, z + 12), 2 * crest)
         z += 12
     if fillets:
         for k in range(count - 1):
@@ -185,7 +185,7 @@ def bolt(rng: np.random.Generator) -> Part:
     crest = rng.uniform(3, 8)
     pitch = rng.uniform(0.17, 0.25) * crest
     part.add(*hexagon(3.4 * crest, 0, 1.4 * crest), 3.4 * crest, 1.4 * crest)
-    part.add(*thread(crest, crest - 0.6 * pitch, pitch, 1.4 * crest, 1.4 * crest + 8 * pitch), 2 * crest)
+    part.add(*screw(crest, crest - 0.6 * pitch, pitch, 1.4 * crest, 1.4 * crest + 8 * pitch), 2 * crest)
     return part
 
 

@@ -120,7 +120,7 @@ COSTLY: dict[str, Callable[[], CALL]] = {
     "JointGroup.ik_all": lambda: lambda: ARM.ik_all(TURNED, count=10**6, restarts=HUGE, time_limit=1000),
     "Mesh.from_arrays": of(lambda: lw.grid(700), lambda m: mg.Mesh.from_arrays(*m)),
     "Mesh.load": of(stl, mg.Mesh.load),
-    "_file_is_inside_out": of(stl, lambda path: repeated(100, lambda: _core._file_is_inside_out(path))()),
+    "_mesh_with_faults": of(stl, lambda path: repeated(100, lambda: _core._mesh_with_faults(path))()),
     "LinkShape.mesh": of(stl, mg.LinkShape.mesh),
     "LinkShape.surface": lambda: lambda: mg.LinkShape(mg.Sphere(0.5)).surface(1500),
     "World.add_mesh": scene_file,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import manifold3d as m3
 import numpy as np
 import pytest
 
@@ -62,6 +63,47 @@ def test_table_names_widths(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
     assert "box_1" in out and "20.00 (100" in out
 
 
+def write_prism(path: Path, profile: list[tuple[float, float]], length: float, refined: int) -> Path:
+    """A profile [mm] extruded along z, each triangle cut into `refined` squared."""
+    solid = m3.Manifold.extrude(m3.CrossSection([profile]), length).refine(refined).to_mesh()
+    vertices, triangles = np.array(solid.vert_properties)[:, :3], np.array(solid.tri_verts)
+    rows = ["solid part"]
+    for corners in vertices[triangles]:
+        points = "".join(f" vertex {p[0]:.9g} {p[1]:.9g} {p[2]:.9g}" for p in corners)
+        rows.append(f"facet normal 0 0 0 outer loop{points} endloop endfacet")
+    path.write_text("\n".join([*rows, "endsolid part"]) + "\n")
+    return path
+
+
+PROFILES: dict[str, tuple[list[tuple[float, float]], list[float]]] = {
+    "L": ([(0, 0), (60, 0), (60, 5), (5, 5), (5, 40), (0, 40)], [5, 30, 40, 60]),
+    "U": ([(0, 0), (50, 0), (50, 30), (44, 30), (44, 8), (6, 8), (6, 30), (0, 30)], [6, 8, 30, 50]),
+    "T": (
+        [(20, 0), (28, 0), (28, 30), (48, 30), (48, 36), (0, 36), (0, 30), (20, 30)],
+        [6, 8, 30, 48],
+    ),  # its flange and its stem
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "refined"), [("L", 1), ("L", 32), ("U", 1), ("U", 32), ("T", 32)])
+def test_widths_of_profiles_are_those_that_grasps_have(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str, refined: int
+) -> None:
+    """Walls of a profile, its whole widths and the length of its prism, as jaws close on them."""
+    profile, widths = PROFILES[name]
+    part = write_prism(tmp_path / "part.stl", profile, 30, refined)
+    assert main(["segment", str(part), "--unit", "mm", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    mesh, labels, held_by_any = mg.Mesh.load(part, scale=0.001), np.array(found["labels"]), set()
+    for segment in found["segments"]:
+        grasps = mg.gripper_design.jaw_grasps(mesh, list(np.flatnonzero(labels == segment["segment"])))
+        held = {round(1e3 * g.opening, 3) for g in grasps}
+        assert {round(1e3 * w["width"], 3) for w in segment["widths"]} == held
+        held_by_any |= held
+    assert held_by_any == set(widths)
+
+
 @pytest.mark.slow
 def test_open_mesh_inside_out_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     part = write_stl(tmp_path / "part.stl", drop=1, turn=True)
@@ -83,6 +125,58 @@ def test_closed_mesh_inside_out_is_said(tmp_path: Path, capsys: pytest.CaptureFi
         assert found["notes"] == (["the mesh was inside out: its faces were turned"] if turn else [])
 
 
+def write_faulty_box(path: Path, turned: int = 0, twice: bool = False, beside: float = 0.0) -> Path:
+    """The box of `write_stl` with some faces turned, every face twice, or a second box at a distance along x [m]."""
+    mesh = mg.LinkShape(mg.Box([0.03, 0.02, 0.01])).surface()
+    corners = np.array(mesh.vertices[mesh.triangles])
+    corners[:turned] = corners[:turned, ::-1]
+    if twice:
+        corners = np.concatenate([corners, corners])
+    if beside:
+        corners = np.concatenate([corners, corners + [beside, 0, 0]])
+    rows = ["solid part"]
+    for c in corners:
+        points = "".join(f" vertex {p[0]:.9g} {p[1]:.9g} {p[2]:.9g}" for p in c)
+        rows.append(f"facet normal 0 0 0 outer loop{points} endloop endfacet")
+    path.write_text("\n".join([*rows, "endsolid part"]) + "\n")
+    return path
+
+
+TURNED = "faces of 12 looked another way than the rest of the mesh: they were turned"
+TWICE = "the mesh has 12 faces twice: one of each was left out"
+FAULTS = {
+    "six turned": ({"turned": 6}, [f"6 {TURNED}"]),
+    "one turned": ({"turned": 1}, [f"1 {TURNED}".replace("faces", "face", 1)]),
+    "all twice": ({"twice": True}, [TWICE]),
+    "five turned, all twice": ({"turned": 5, "twice": True}, [TWICE, f"5 {TURNED}"]),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("fault", FAULTS)
+def test_faulty_meshes_are_mended_and_told(tmp_path: Path, capsys: pytest.CaptureFixture[str], fault: str) -> None:
+    """Volume and widths are those of the mesh without fault."""
+    how, notes = FAULTS[fault]
+    part = write_faulty_box(tmp_path / "part.stl", **how)  # type: ignore[arg-type]
+    assert mg.Mesh.load(part).volume == pytest.approx(0.03 * 0.02 * 0.01, rel=1e-6)
+    assert main(["segment", str(part), "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["closed"] and found["triangles"] == 12 and found["notes"] == notes
+    (segment,) = found["segments"]
+    assert sorted(w["width"] for w in segment["widths"]) == pytest.approx([0.01, 0.02, 0.03], abs=1e-8)
+    assert [w["covered"] for w in segment["widths"]] == pytest.approx([1, 1, 1])
+
+
+@pytest.mark.slow
+def test_two_bodies_are_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for beside, bodies in ((0.04, 2), (0.03, 1)):  # apart by 10 mm; face to face
+        part = write_faulty_box(tmp_path / "part.stl", beside=beside)
+        assert main(["segment", str(part), "--json"]) == 0
+        notes = json.loads(capsys.readouterr().out)["notes"]
+        assert len(notes) == bodies - 1
+        assert all("2 bodies that do not touch" in note for note in notes)
+
+
 @pytest.mark.parametrize(("scale", "unit"), [(1000.0, "m"), (1e-3, "m"), (1.0, "mm")])
 def test_units_that_cannot_be_right(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], scale: float, unit: str
@@ -90,7 +184,7 @@ def test_units_that_cannot_be_right(
     part = write_stl(tmp_path / "part.stl", scale=scale)
     assert main(["segment", str(part), "--unit", unit]) == 2
     said = capsys.readouterr().err
-    assert "m across" in said and str(part) in said
+    assert "m from corner to corner" in said and str(part) in said
     if scale == 1000.0:
         assert "mm" in said
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import manifold3d as m3
 import numpy as np
 import pytest
 
 import mmgrasp as mg
-from composed_parts import Part, composed_parts, faces_right, stepped_shaft
+from composed_parts import Part, composed_parts, cylinder, faces_right, screw, stepped_shaft
 from conftest import REPOSITORY
 
 DATA = REPOSITORY.parent / "shared" / "data" / "meshes"
@@ -121,6 +122,55 @@ def test_thread_is_found_and_nothing_else_is(tmp_path: Path) -> None:
     assert abs(thread.T_mesh_thread[2, 2]) == pytest.approx(1, abs=1e-4)
     assert np.mean(truth[thread.faces] == truth.max()) > 0.99
     assert [s.threaded for s in found.segments].count(True) == 1
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", [3, 13, 33])
+def test_a_thread_ends_where_it_ends(tmp_path: Path, number: int) -> None:
+    """Shafts of the root's radius elsewhere on the part, whose ends have edges in phase with the helix, are none of it: the thread was 72.9 mm long."""
+    part, noise = composed_parts(49)[number]
+    _, truth, found = segmented(part, noise, number, tmp_path)
+    (thread,) = found.threads
+    assert 1e3 * thread.length == pytest.approx(12, abs=0.25)
+    assert np.mean(truth[thread.faces] == truth.max()) > 0.998
+    assert np.isin(np.flatnonzero(truth == truth.max()), thread.faces).mean() > 0.985
+    assert faces_right(truth, found.labels) > 0.997
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("edge", "noise"), [(2.0, 0.0), (2.0, 0.02), (0.6, 0.02)])
+def test_shafts_that_a_thread_ends_on_are_none_of_it(tmp_path: Path, edge: float, noise: float) -> None:
+    """A shaft of the root's radius on one side and one between root and crest on the other; noise makes roots of edges anywhere."""
+    part = Part("threaded", m3.Manifold())
+    part.add(*cylinder(6.77, 0, 15), 2 * 6.77)
+    part.add(*cylinder(7.2, 27, 40), 2 * 7.2)
+    part.add(*screw(7.67, 6.77, 1.5, 15, 27), 2 * 7.67)
+    vertices, triangles, truth = part.mesh(edge, noise, 1)
+    found = mg.grasping.segment_mesh(as_mesh(vertices, triangles, tmp_path / "part.ply"))
+    (found_thread,) = found.threads
+    assert 1e3 * found_thread.length == pytest.approx(12, abs=0.25)
+    assert 1e3 * found_thread.pitch == pytest.approx(1.5, abs=0.01)
+    assert 1e3 * found_thread.crest_radius == pytest.approx(7.67, abs=0.04)
+    assert 1e3 * found_thread.root_radius == pytest.approx(6.77, abs=0.05)
+    a, b, c = (1e3 * vertices[triangles[:, k]] for k in range(3))
+    areas = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+    of_thread = truth == truth.max()
+    assert areas[np.setdiff1d(found_thread.faces, np.flatnonzero(of_thread))].sum() < 0.02 * areas[of_thread].sum()
+    assert areas[np.setdiff1d(np.flatnonzero(of_thread), found_thread.faces)].sum() < 0.08 * areas[of_thread].sum()
+
+
+@pytest.mark.slow
+def test_two_threads_on_one_shaft_are_two(tmp_path: Path) -> None:
+    """One pitch, one radius, one helix even: what lies between them is a shaft."""
+    part = Part("stud", m3.Manifold())
+    part.add(*cylinder(5, 12, 42), 10)
+    part.add(*screw(6.0, 5.1, 1.5, 0, 12), 12)
+    part.add(*screw(6.0, 5.1, 1.5, 42, 54), 12)
+    _, truth, found = segmented(part, 0.0, 0, tmp_path)
+    assert sorted(1e3 * t.length for t in found.threads) == pytest.approx([12, 12], abs=0.1)
+    assert sorted(1e3 * t.T_mesh_thread[2, 3] for t in found.threads) == pytest.approx([6, 48], abs=0.1)
+    for one in found.threads:
+        assert np.bincount(truth[one.faces] + 1).max() > 0.995 * len(one.faces)
 
 
 @pytest.mark.slow

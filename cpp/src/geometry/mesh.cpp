@@ -9,9 +9,12 @@
 
 namespace mmgrasp {
 
-std::shared_ptr<const TriangleMesh> make_mesh(std::vector<Eigen::Vector3d> vertices,
-                                              std::vector<std::array<int, 3>> triangles, const std::string& source,
-                                              MeshReport* report) {
+namespace {
+
+std::shared_ptr<const TriangleMesh> checked_and_cleaned(std::vector<Eigen::Vector3d> vertices,
+                                                        std::vector<std::array<int, 3>> triangles,
+                                                        const std::string& source, MeshReport* report,
+                                                        detail::MeshFaults* faults) {
   const std::string name = source.empty() ? "mesh" : "mesh '" + source + "'";
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     if (!vertices[i].allFinite()) throw InvalidInput(name + ": vertex " + std::to_string(i) + " is not finite");
@@ -25,9 +28,22 @@ std::shared_ptr<const TriangleMesh> make_mesh(std::vector<Eigen::Vector3d> verti
               "must be in [0, " + std::to_string(vertices.size()) + ")");
     }
   }
-  auto mesh = detail::clean_mesh({std::move(vertices), std::move(triangles)}, source, report);
+  auto mesh = detail::clean_mesh({std::move(vertices), std::move(triangles)}, source, report, faults);
   if (mesh->triangles.empty()) throw InvalidInput(name + ": holds no triangle with an area");
   return mesh;
+}
+
+}  // namespace
+
+std::shared_ptr<const TriangleMesh> make_mesh(std::vector<Eigen::Vector3d> vertices,
+                                              std::vector<std::array<int, 3>> triangles, const std::string& source,
+                                              MeshReport* report) {
+  return checked_and_cleaned(std::move(vertices), std::move(triangles), source, report, nullptr);
+}
+
+std::shared_ptr<const TriangleMesh> detail::make_mesh(std::vector<Eigen::Vector3d> vertices,
+                                                      std::vector<std::array<int, 3>> triangles, MeshFaults& faults) {
+  return checked_and_cleaned(std::move(vertices), std::move(triangles), "", nullptr, &faults);
 }
 
 double mesh_volume(const TriangleMesh& mesh) {

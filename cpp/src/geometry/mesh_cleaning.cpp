@@ -2,15 +2,20 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <unordered_map>
+#include <utility>
 
+#include "geometry/faces_inwards.hpp"
 #include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/geometry/detail/mesh_topology.hpp"
 
 namespace mmgrasp::detail {
 
 namespace {
+
+constexpr double kNoVolume = 1e-15;  // Of the cube of the diagonal: rounding.
 
 using Triangles = std::vector<std::array<int, 3>>;
 
@@ -96,20 +101,86 @@ Triangles without_repeats(const Triangles& triangles) {
   return kept;
 }
 
-/// Whether the triangles bound a solid once each is there only once; then they are what is left, and oriented.
-bool close_without_repeats(const std::vector<Eigen::Vector3d>& vertices, Triangles& triangles) {
-  TriangleMesh once;
-  once.triangles = without_repeats(triangles);
-  if (once.triangles.size() == triangles.size() || !orient_closed(vertices, once.triangles)) return false;
-  once.vertices = vertices;
-  if (!(mesh_volume(once) > 0)) return false;
-  triangles = std::move(once.triangles);
+/// Whether the triangles bound a solid; then they are oriented. Two coincident sheets are closed edge by edge but bound
+/// nothing.
+bool close(const std::vector<Eigen::Vector3d>& vertices, Triangles& triangles) {
+  Triangles oriented = triangles;
+  if (!orient_closed(vertices, oriented)) return false;
+  Eigen::AlignedBox3d bounds;
+  for (const Eigen::Vector3d& v : vertices) bounds.extend(v);
+  double six = 0;  // volumes
+  for (const auto& t : oriented) {
+    const Eigen::Vector3d &a = vertices[t[0]], &o = vertices[0];
+    six += (a - o).dot((vertices[t[1]] - o).cross(vertices[t[2]] - o));
+  }
+  if (!(six > 6 * kNoVolume * std::pow(bounds.diagonal().norm(), 3))) return false;
+  triangles = std::move(oriented);
   return true;
+}
+
+/// Whether the triangles bound a solid once each is there only once; then they are what is left.
+bool close_without_repeats(const std::vector<Eigen::Vector3d>& vertices, Triangles& triangles) {
+  Triangles once = without_repeats(triangles);
+  if (once.size() == triangles.size() || !close(vertices, once)) return false;
+  triangles = std::move(once);
+  return true;
+}
+
+/// A triangle that begins with its least corner, turned as it is.
+std::array<int, 3> from_least(std::array<int, 3> t) {
+  std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+  return t;
+}
+
+Triangles sorted_from_least(const Triangles& triangles) {
+  Triangles out;
+  out.reserve(triangles.size());
+  for (const auto& t : triangles) out.push_back(from_least(t));
+  InterruptionPoll poll;
+  std::sort(out.begin(), out.end(), [&](const auto& a, const auto& b) {
+    poll();
+    return a < b;
+  });
+  return out;
+}
+
+/// Drops triangles that have the corners of an earlier one and are turned as it is.
+void drop_copies(Triangles& triangles) {
+  const Triangles sorted = sorted_from_least(triangles);
+  Triangles copied;
+  for (std::size_t i = 1; i < sorted.size(); ++i)
+    if (sorted[i] == sorted[i - 1]) copied.push_back(sorted[i]);
+  if (copied.empty()) return;
+  std::vector<char> met(copied.size(), 0);
+  Triangles kept;
+  for (const auto& t : triangles) {
+    const auto at = std::lower_bound(copied.begin(), copied.end(), from_least(t));
+    if (at != copied.end() && *at == from_least(t) && std::exchange(met[at - copied.begin()], 1) != 0) continue;
+    kept.push_back(t);
+  }
+  triangles = std::move(kept);
+}
+
+/// How many triangles a file has the other way round only.
+int count_turned(const Triangles& file, const Triangles& triangles) {
+  if (triangles == file) return 0;
+  const Triangles sorted = sorted_from_least(file);
+  return static_cast<int>(std::count_if(triangles.begin(), triangles.end(), [&](const auto& t) {
+    return !std::binary_search(sorted.begin(), sorted.end(), from_least(t));
+  }));
+}
+
+/// Makes the best of triangles that are no solid as they are: copies go, and faces that look another way than their
+/// neighbours are turned, which may make them one after all.
+bool mend_open(const std::vector<Eigen::Vector3d>& vertices, Triangles& triangles) {
+  drop_copies(triangles);
+  return orient_open(vertices, triangles) && close(vertices, triangles);
 }
 
 }  // namespace
 
-std::shared_ptr<const TriangleMesh> clean_mesh(RawMesh raw, const std::string& source, MeshReport* report) {
+std::shared_ptr<const TriangleMesh> clean_mesh(RawMesh raw, const std::string& source, MeshReport* report,
+                                               MeshFaults* faults) {
   MeshReport found;
   found.path = source;
   found.vertices_read = static_cast<int>(raw.vertices.size());
@@ -126,14 +197,20 @@ std::shared_ptr<const TriangleMesh> clean_mesh(RawMesh raw, const std::string& s
   // answered.
   // A file may hold each face twice, from either side. Faces that two solids share are no repeats: both stay where one
   // of them would leave the solids open.
-  mesh->closed = close_without_repeats(mesh->vertices, triangles) || orient_closed(mesh->vertices, triangles);
+  const Triangles file = faults == nullptr ? Triangles{} : triangles;
+  mesh->closed = close_without_repeats(mesh->vertices, triangles) || close(mesh->vertices, triangles) ||
+                 mend_open(mesh->vertices, triangles);
+  if (faults != nullptr) faults->repeated_triangles = static_cast<int>(file.size() - triangles.size());
   triangles.erase(
       std::remove_if(triangles.begin(), triangles.end(), [&](const auto& t) { return has_no_area(mesh->vertices, t); }),
       triangles.end());
-  if (!mesh->closed) mesh->closed = orient_closed(mesh->vertices, triangles);
+  if (!mesh->closed) mesh->closed = close(mesh->vertices, triangles);
+  if (faults != nullptr) {
+    faults->turned_triangles = count_turned(file, triangles);
+    faults->inside_out = mesh->closed ? faults->turned_triangles == static_cast<int>(triangles.size())
+                                      : faces_inwards(mesh->vertices, triangles);
+  }
   drop_unused_vertices(mesh->vertices, triangles);
-  // Two coincident sheets are closed edge by edge but bound nothing.
-  if (mesh->closed && !(mesh_volume(*mesh) > 0)) mesh->closed = false;
   if (mesh->closed && !triangles.empty()) mesh->convex = is_convex(*mesh);
 
   found.degenerate_triangles = static_cast<int>(triangles_read - triangles.size());

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "mmgrasp/geometry/detail/mesh_faults.hpp"
 #include "mmgrasp/geometry/mesh.hpp"
 
 namespace mmgrasp::detail {
@@ -17,7 +18,9 @@ struct RawMesh {
 };
 
 /// Merges equal vertices, drops triangles without an area and unused vertices, and finds out whether the mesh is closed
-/// and convex. Input is finite and its indices are in range.
-std::shared_ptr<const TriangleMesh> clean_mesh(RawMesh raw, const std::string& source, MeshReport* report);
+/// and convex. Faces of an open one that look another way than their neighbours are turned, copies dropped. Input is
+/// finite and its indices are in range.
+std::shared_ptr<const TriangleMesh> clean_mesh(RawMesh raw, const std::string& source, MeshReport* report,
+                                               MeshFaults* faults = nullptr);
 
 }  // namespace mmgrasp::detail

@@ -10,6 +10,8 @@ namespace mmgrasp::detail {
 
 namespace {
 
+constexpr double kEncloses = 1e-6;  // Less of the volumes of a sheet's tetrahedra is rounding.
+
 struct HalfEdge {
   int low, high;       // the edge's vertices, low < high
   int triangle, side;  // side k goes from corner k to corner k + 1
@@ -98,6 +100,7 @@ bool make_consistent(std::vector<std::array<int, 3>>& triangles, const Neighbour
       stack.pop_back();
       shells.shell_of_triangle[t] = shells.count;
       for (const Neighbour& n : neighbours[t]) {
+        if (n.triangle < 0) continue;  // a border
         const signed char wanted = n.same_orientation ? flip[t] : 1 - flip[t];
         if (flip[n.triangle] < 0) {
           flip[n.triangle] = wanted;
@@ -117,6 +120,21 @@ bool make_consistent(std::vector<std::array<int, 3>>& triangles, const Neighbour
 
 double six_volumes(const std::vector<Eigen::Vector3d>& v, const std::array<int, 3>& t, const Eigen::Vector3d& origin) {
   return (v[t[0]] - origin).dot((v[t[1]] - origin).cross(v[t[2]] - origin));
+}
+
+// Neighbours over edges of two triangles; a border elsewhere.
+Neighbours neighbours_over_plain_edges(const std::vector<std::array<int, 3>>& triangles) {
+  const std::vector<HalfEdge> edges = sorted_half_edges(triangles);
+  Neighbours out(triangles.size());
+  InterruptionPoll poll;
+  for (std::size_t i = 0; i < edges.size();) {
+    poll();
+    std::size_t end = i + 1;
+    while (end < edges.size() && edges[end].low == edges[i].low && edges[end].high == edges[i].high) ++end;
+    if (end - i == 2) pair_up(&edges[i], &edges[0] + end, out);
+    i = end;
+  }
+  return out;
 }
 
 // A shell that lies in no other bounds material, so it must look outwards. Nested shells keep their sense relative to
@@ -213,6 +231,38 @@ bool orient_closed(const std::vector<Eigen::Vector3d>& vertices, std::vector<std
   std::vector<std::array<int, 3>> oriented = triangles;
   if (!make_consistent(oriented, neighbours, shells)) return false;
   orient_outwards(vertices, oriented, shells);
+  triangles = std::move(oriented);
+  return true;
+}
+
+bool orient_open(const std::vector<Eigen::Vector3d>& vertices, std::vector<std::array<int, 3>>& triangles) {
+  if (triangles.empty()) return true;
+  Shells shells;
+  std::vector<std::array<int, 3>> oriented = triangles;
+  if (!make_consistent(oriented, neighbours_over_plain_edges(triangles), shells)) return false;
+  std::vector<Eigen::AlignedBox3d> bounds(shells.count);
+  for (std::size_t t = 0; t < oriented.size(); ++t)
+    for (const int corner : oriented[t]) bounds[shells.shell_of_triangle[t]].extend(vertices[corner]);
+  struct Sense {
+    double volume = 0, scale = 0, as_they_were = 0, turned = 0;
+  };
+  std::vector<Sense> senses(shells.count);
+  for (std::size_t t = 0; t < oriented.size(); ++t) {
+    const int s = shells.shell_of_triangle[t];
+    const double part = six_volumes(vertices, oriented[t], bounds[s].center());
+    senses[s].volume += part;
+    senses[s].scale += std::abs(part);
+    const Eigen::Vector3d& a = vertices[oriented[t][0]];
+    const double area = (vertices[oriented[t][1]] - a).cross(vertices[oriented[t][2]] - a).norm();
+    (oriented[t] == triangles[t] ? senses[s].as_they_were : senses[s].turned) += area;
+  }
+  for (std::size_t t = 0; t < oriented.size(); ++t) {
+    const Sense& sense = senses[shells.shell_of_triangle[t]];
+    const bool at_one = sense.turned == 0 || sense.as_they_were == 0;
+    const bool encloses = std::abs(sense.volume) > kEncloses * sense.scale;
+    const bool wrong = at_one ? sense.turned > 0 : encloses ? sense.volume < 0 : sense.turned > sense.as_they_were;
+    if (wrong) std::swap(oriented[t][1], oriented[t][2]);
+  }
   triangles = std::move(oriented);
   return true;
 }

@@ -146,7 +146,6 @@ std::string unsuited(const Judgement& by, const SegmentToHold& segment, const st
   if (segment.fingers == 0)
     return std::string("a ") + primitive_kind_name(segment.primitive.kind) +
            ": neither parallel jaws nor centric fingers suit it";
-  if (segment.primitive.widths.empty()) return "no surface to hold";
   return "";
 }
 

@@ -5153,7 +5153,7 @@ class GraspWidth:
     @property
     def covered(self) -> float:
         """
-        Share of the box' faces (the lesser of the two) or of the turn around the wall that is surface.
+        Share of the box' shadow along the axis on which facets lie opposite each other, or of the turn around the wall that is surface.
         """
     @property
     def width(self) -> float:
@@ -7045,8 +7045,6 @@ def _drive_by_option_table() -> dict[str, typing.Any]:
     ...
 def _edge_option_table() -> dict[str, typing.Any]:
     ...
-def _file_is_inside_out(path: str | os.PathLike[str]) -> bool:
-    ...
 def _first_drive_by_guess(group: JointGroup, *, start: numpy.typing.ArrayLike, tasks: collections.abc.Sequence[DriveByTask], goal: numpy.typing.ArrayLike, waypoints: int = 35) -> typing.Any:
     """
     The guess of the first seed, for benchmarks against other optimisers; None when a task is out of reach. solve() takes it from there, judging included: whether it is solved, the duration, processor seconds that judging once more took, and iterations.
@@ -7066,6 +7064,8 @@ def _ik_option_table() -> dict[str, typing.Any]:
 def _manipulation_option_table() -> dict[str, typing.Any]:
     ...
 def _mesh_segmentation_option_table() -> dict[str, typing.Any]:
+    ...
+def _mesh_with_faults(path: str | os.PathLike[str], scale: float = 1.0) -> tuple[Mesh, bool, int, int, int]:
     ...
 def _minimal_grippers_option_table() -> dict[str, typing.Any]:
     ...
@@ -7295,11 +7295,12 @@ def fit_cuboids(points: numpy.typing.ArrayLike, *, T_world_tray: numpy.typing.Ar
         min_points: int = 60  # smaller clusters are left out
         plane_iterations: int = 1000  # random planes tried
     """
-def fit_primitives(mesh: Mesh, labels: numpy.typing.ArrayLike, *, threads: collections.abc.Sequence[ScrewThread] = [], progress: collections.abc.Callable[[str, float], typing.Any] | None = None) -> list[FittedPrimitive]:
+def fit_primitives(mesh: Mesh, labels: numpy.typing.ArrayLike, *, threads: collections.abc.Sequence[ScrewThread] = [], min_contact: float = 0.003, progress: collections.abc.Callable[[str, float], typing.Any] | None = None) -> list[FittedPrimitive]:
     """
     The cylinder, box, cone or sphere that stands for each segment of a mesh: the one whose volume is closest to that of
     the segment's convex hull, of those with surface on them (P1, section 5.2.2). `labels` (m,): the segment of each face, as
-    MeshSegmentation.labels. Inner walls are never offered for grasping, nor are sides of a box with nothing on them. `threads`:
+    MeshSegmentation.labels. Round inner walls are never offered for grasping; a box is held by the facets that `jaw_grasps` takes,
+    which lie opposite each other over `min_contact` [m] or more. `threads`:
     those of MeshSegmentation, which count as the cylinder through their crests. Raises InvalidInput when there is not one label
     >= 0 a face, or for threads of other meshes.
     """

@@ -14,6 +14,7 @@ from rich.table import Table
 from .. import _core
 from .._core import InvalidInput
 from .._files import printable, write_file
+from ..grippers.part_mesh import load_part_mesh
 from ..grippers.part_size import UNITS, wrong_size
 from ..scan.objects import pose_to_dict
 from ..viz.style import segment_colour
@@ -24,6 +25,7 @@ from .output_folder import LIST, OutputFolder
 FORMAT, VERSION = "mmgrasp-segments", 2
 FILES = ("segments.json", "segments.png", "diameters.png", LIST)
 _UNKNOWN_SHARE = 0.2
+_MOST_WIDTHS = 8  # in a row of the table; segments.json has all
 
 
 def run_segment(arguments: argparse.Namespace, console: Console) -> int:
@@ -31,13 +33,13 @@ def run_segment(arguments: argparse.Namespace, console: Console) -> int:
     folder = None if arguments.out is None else OutputFolder(arguments.out, FILES)
     with Reporter(console) as report:
         report("reading", 0.0)
-        mesh = _core.Mesh.load(str(arguments.mesh), scale=UNITS[arguments.unit])
+        mesh, faults = load_part_mesh(str(arguments.mesh), UNITS[arguments.unit])
         points = mesh.vertices
         size = np.ptp(points, axis=0)
         _check_size(arguments, float(np.linalg.norm(size)))
         found = _core.segment_mesh(mesh, seed=arguments.seed, threads=arguments.threads, progress=report)
         primitives = _core.fit_primitives(mesh, found.labels, threads=found.threads, progress=report)
-        content = segments_to_dict(arguments, mesh, size, found, primitives)
+        content = segments_to_dict(arguments, mesh, size, found, primitives, faults)
         if folder is not None:
             report("writing", 0.0)
             text = json.dumps(content, indent=1, allow_nan=False) + "\n"
@@ -60,7 +62,9 @@ def _check_size(arguments: argparse.Namespace, diagonal: float) -> None:
     rule = wrong_size(diagonal, arguments.unit)
     if rule:
         file = printable(str(arguments.mesh))
-        raise InvalidInput(f"{file}: would be {diagonal:.4g} m across with --unit {arguments.unit}; {rule}")
+        raise InvalidInput(
+            f"{file}: would be {diagonal:.4g} m from corner to corner with --unit {arguments.unit}; {rule}"
+        )
 
 
 def segments_to_dict(
@@ -69,13 +73,13 @@ def segments_to_dict(
     size: np.ndarray,
     found: _core.MeshSegmentation,
     primitives: list[_core.FittedPrimitive],
+    faults: list[str],
 ) -> dict[str, Any]:
-    """What segments.json holds: SI units."""
+    """What segments.json holds: SI units. `faults`: notes on the file's mesh."""
     notes = []
     if not mesh.closed:
         notes.append("the mesh is open: walls around its gaps may be joined wrongly")
-    if found.turned or (mesh.closed and _core._file_is_inside_out(str(arguments.mesh))):
-        notes.append("the mesh was inside out: its faces were turned")
+    notes += faults
     unknown = float(np.mean(found.diameters == 0))
     if unknown > _UNKNOWN_SHARE:
         notes.append(f"{100 * unknown:.0f} % of the faces have nothing behind them: the mesh may be a sheet")
@@ -132,12 +136,17 @@ def _print(content: dict[str, Any], out: Path | None, console: Console) -> None:
     console.print(
         f"{printable(content['mesh'])}: {content['triangles']} triangles, {across} mm", markup=False, soft_wrap=True
     )
-    table = Table(title="segments; sizes in mm, share of a width's contact that is surface in brackets")
+    table = Table(
+        title="segments; sizes in mm; widths to hold, in brackets how much of the size across lies between them"
+    )
     for column in ("no.", "", "name", "size", "thickness", "volume", "widths"):
         table.add_column(column, justify="right" if column in ("no.", "thickness", "volume") else "left")
     for row in content["segments"]:
         ratio = row["volume"] / row["hull_volume"] if row["hull_volume"] > 0 else float("nan")
-        widths = ", ".join(f"{1e3 * w['width']:.2f} ({100 * w['covered']:.0f} %)" for w in row["widths"])
+        listed = [f"{1e3 * w['width']:.2f} ({100 * w['covered']:.0f} %)" for w in row["widths"]]
+        widths = ", ".join(listed[:_MOST_WIDTHS])
+        if len(listed) > _MOST_WIDTHS:
+            widths += f", and {len(listed) - _MOST_WIDTHS} less covered"
         table.add_row(
             str(row["segment"]),
             f"[on {row['colour']}]  [/]",

@@ -17,8 +17,9 @@ from .._core import FingerGrip, GripperActuator, HoldingRequirement, InvalidInpu
 from .._files import ASSETS, shipped
 from ..documents.reading import Node, near_miss, read_yaml
 from ..scenario.robot_section import find_file
+from .part_mesh import load_part_mesh
 from .part_size import UNITS, wrong_size
-from .turned_parts import block, turned
+from .turned_parts import SIDES, block, meeting_edges, turned
 
 Pose = NDArray[np.float64]
 
@@ -42,8 +43,8 @@ class AssemblyPart:
     keep_off: list[KeepOff] = field(default_factory=list)
     """What of its surface no finger may touch."""
     source: str = ""
-    inside_out: bool = False
-    """As its file has it: its faces were turned."""
+    mesh_notes: list[str] = field(default_factory=list)
+    """What is wrong with its mesh as the file has it, and what was mended."""
 
 
 @dataclass
@@ -189,10 +190,11 @@ def _read_part(node: Node, scale: float, unit: str) -> AssemblyPart:
     if len(kinds) != 1:
         node.fail("must have one of mesh, turned and box")
     source = ""
+    notes: list[str] = []
     if kinds == ["mesh"]:
         source = str(find_file(node["mesh"]))
         with node["mesh"].blamed():
-            mesh = Mesh.load(source, [scale] * 3)
+            mesh, notes = load_part_mesh(source, scale)
     elif kinds == ["turned"]:
         mesh = _turned(node["turned"], scale)
     else:
@@ -210,8 +212,7 @@ def _read_part(node: Node, scale: float, unit: str) -> AssemblyPart:
         [_read_keep_off(name, element, scale) for element in node["keep_off"].elements()] if "keep_off" in node else []
     )
     pose = _pose(node["pose"], scale) if "pose" in node else np.eye(4)
-    inside_out = bool(source) and _core._file_is_inside_out(source)
-    return AssemblyPart(name, mesh, pose, keep_off, source, inside_out)
+    return AssemblyPart(name, mesh, pose, keep_off, source, notes)
 
 
 def _size(mesh: Mesh) -> float:
@@ -236,12 +237,22 @@ def _read_keep_off(part: str, node: Node, scale: float) -> KeepOff:
     return KeepOff(part, boxes=[(place, np.array(node["box"].numbers(3, above=0)) * scale)], source=source)
 
 
+def _edge_text(rows: NDArray[np.float64], begin: int) -> str:
+    """An edge of a closed profile by its ends, in the file's unit, and by their rows, from 0."""
+    end = (begin + 1) % len(rows)
+    first, last = (f"[{r:g}, {z:g}]" for r, z in rows[[begin, end]])
+    return f"from {first} to {last} (rows {begin} and {end})"
+
+
 def _turned(node: Node, scale: float) -> Mesh:
     rows = node.array(2)
     if len(rows) < 3:
         node.fail("must have at least three rows [radius, z]")
     if (rows[:, 0] < 0).any():
         node.fail("radii must be at least 0")
+    if 2 * SIDES * len(rows) <= MOST_TRIANGLES and (meeting := meeting_edges(rows)) is not None:
+        first, second = (_edge_text(rows, i) for i in meeting)
+        node.fail(f"must not cross itself or touch itself off the axis: the edge {first} meets the edge {second}")
     mesh = turned(rows * scale)
     if not mesh.closed:
         node.fail("must be a closed profile of [radius, z] that does not cross itself")

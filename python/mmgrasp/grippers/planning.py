@@ -71,8 +71,7 @@ class GripperPlan:
         for name, part in self.assembly.parts.items():
             if not part.mesh.closed:
                 out.append(f"{name}: the mesh is open: it has no inside that others could be seen to stand in")
-            if part.inside_out:
-                out.append(f"{name}: the mesh was inside out: its faces were turned")
+            out += [f"{name}: {note}" for note in part.mesh_notes]
             if name not in met:
                 out.append(f"{name}: no operation moves it, and none has it in onto: it is in nobody's way")
         for step in self.assembly.steps:

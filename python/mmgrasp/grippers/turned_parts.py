@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from .._core import Mesh
 
@@ -19,6 +19,58 @@ Section = float | tuple[float, float]
 def turned(profile: ArrayLike, sides: int = SIDES) -> Mesh:
     """The solid that a closed profile of (radius, z) rows [m] sweeps about z; radii of 0 lie on the axis."""
     return lofted([(float(r), float(z)) for r, z in np.asarray(profile, dtype=float)], sides)
+
+
+def meeting_edges(profile: ArrayLike) -> tuple[int, int] | None:
+    """The first two edges of a closed profile of (radius, z) rows that meet where they are not joined, by the rows that they begin with; None: it is simple.
+
+    Points on the axis may meet: no surface goes through them.
+    """
+    rows = np.asarray(profile, dtype=float)
+    begin = [i for i in range(len(rows)) if not np.array_equal(rows[i], rows[(i + 1) % len(rows)])]
+    a = rows[begin]
+    b = np.roll(a, -1, axis=0)
+    with_surface = (a[:, 0] > 0) | (b[:, 0] > 0)
+    rounding = 1e-12 * float(np.ptp(rows, axis=0).max()) ** 2
+    for i in np.flatnonzero(with_surface):
+        along, later = b[i] - a[i], np.arange(i + 1, len(a))
+        # On which side of edge i the ends of the others lie, and the other way round; 0: on its line.
+        sides = [np.where(np.abs(s) > rounding, np.sign(s), 0.0) for s in _sides(a[i], b[i], a[later], b[later])]
+        meet = (sides[0] * sides[1] <= 0) & (sides[2] * sides[3] <= 0) & with_surface[later]
+        for k in later[meet]:
+            if _points_in_common(a[i], along, a[k], b[k], rounding, joined=k in (i + 1, (i - 1) % len(a))):
+                return begin[i], begin[k]
+    return None
+
+
+def _sides(
+    a: NDArray[np.float64], b: NDArray[np.float64], c: NDArray[np.float64], d: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Twice the signed areas of the triangles (a, b, c), (a, b, d), (c, d, a), (c, d, b); c and d are (n, 2)."""
+
+    def cross(u: NDArray[np.float64], v: NDArray[np.float64]) -> NDArray[np.float64]:
+        return np.asarray(u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0])
+
+    return cross(b - a, c - a), cross(b - a, d - a), cross(d - c, a - c), cross(d - c, b - c)
+
+
+def _points_in_common(
+    a: NDArray[np.float64],
+    along: NDArray[np.float64],
+    c: NDArray[np.float64],
+    d: NDArray[np.float64],
+    rounding: float,
+    joined: bool,
+) -> bool:
+    """Whether two edges that reach each other's lines have a point in common off the axis, or off their joint."""
+    other = d - c
+    cross = along[0] * other[1] - along[1] * other[0]
+    if abs(cross) > rounding:
+        share = ((c - a)[0] * other[1] - (c - a)[1] * other[0]) / cross
+        return not joined and (a + share * along)[0] > 1e-9 * float(np.abs([a, a + along]).max())
+    # On one line: edges that are joined and go on from each other have their joint in common, those that go back more.
+    places = np.sort(np.array([c - a, d - a]) @ along / (along @ along))
+    return bool(min(places[1], 1.0) - max(places[0], 0.0) > (1e-9 if joined else -1e-9))
 
 
 def lofted(profile: Sequence[tuple[Section, float]], sides: int = SIDES) -> Mesh:

@@ -71,7 +71,8 @@ TEST(FindThreads, OfALongRodIsOne) {
   const std::vector<ScrewThread> found = detail::find_threads(threaded_rod(48, 300));
   ASSERT_EQ(found.size(), 1u);
   EXPECT_NEAR(found[0].pitch, 1e-3, 1e-6);
-  EXPECT_NEAR(found[0].root_radius, 0.0034 * std::cos(M_PI / 48), 1e-6);  // of the edges' middles
+  EXPECT_NEAR(found[0].root_radius, 0.0034, 1e-9);
+  EXPECT_NEAR(found[0].crest_radius, 0.004, 1e-9);
   EXPECT_NEAR(found[0].length, 0.3, 0.002);
 }
 

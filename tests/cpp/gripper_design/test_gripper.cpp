@@ -124,8 +124,9 @@ TEST(Gripper, InertialsAreThoseOfTheFingersMesh) {
 TEST(Gripper, PadsAreAsWideAsTheMeshHasThem) {
   for (const double low : {0.0, 0.001, 0.004, 0.008, 0.02}) {
     const Gripper g = centric(low, low + 0.008);
+    const auto mesh = g.finger_mesh();
     double widest = 0;
-    for (const Eigen::Vector3d& v : g.finger_mesh()->vertices)
+    for (const Eigen::Vector3d& v : mesh->vertices)
       if (v.x() < 1e-9) widest = std::max(widest, 2 * v.y());
     EXPECT_NEAR(g.pad_width(), widest, 1e-12) << low;
   }

@@ -8,6 +8,7 @@
 #include "mmgrasp/core/monitor.hpp"
 #include "mmgrasp/core/pose.hpp"
 #include "mmgrasp/geometry/mesh.hpp"
+#include "mmgrasp/geometry/opposite_facets.hpp"
 #include "mmgrasp/geometry/segment_mesh.hpp"
 
 namespace mmgrasp {
@@ -18,13 +19,13 @@ enum class PrimitiveKind { cylinder, box, cone, sphere };
 /// "cylinder", "box", "cone", "sphere".
 MMGRASP_EXPORT const char* primitive_kind_name(PrimitiveKind kind);
 
-/// A width at which fingers may close on a segment: opposite faces of its box, or its round wall.
+/// A width at which fingers may close on a segment: opposite facets where a box stands for it, or its round wall.
 struct MMGRASP_EXPORT GraspWidth {
   double width = 0;  ///< [m]
   Eigen::Vector3d axis =
       Eigen::Vector3d::UnitX();  ///< Closing direction of a box, axis of a round wall; unit, mesh frame.
-  double covered =
-      0;  ///< Share of the box' faces (the lesser of the two) or of the turn around the wall that is surface.
+  double covered = 0;  ///< Share of the box' shadow along the axis on which facets lie opposite each other, or of the
+                       ///< turn around the wall that is surface.
 };
 
 /// The primitive that stands for a segment (P1, section 5.2.2).
@@ -43,15 +44,17 @@ struct MMGRASP_EXPORT FittedPrimitive {
 /// that of the segment's convex hull, of those that have surface on them (P1, section 5.2.2; cones and spheres are
 /// ours). Cylinders, cones and spheres are found by RANSAC (PCL, Schnabel, Wahl and Klein 2007's criteria: distance and
 /// normal) and refined by least squares over the corners of the faces, which lie on the true surface where chords do
-/// not. A cylinder is as long as its outward wall: bores, which may run on, do not count. Walls that face inwards
-/// (bores) are never offered, nor are pairs of a box' faces of which one has less than a
-/// tenth of its area on it. `labels`: the segment of each face, as in MeshSegmentation. Throws InvalidInput when there
-/// is not one label >= 0 a face, or for threads of other meshes. Nothing when the monitor stops it. A number below
-/// the largest label that no face has is an empty segment: a box of no size, without widths. `threads`: those found by
-/// segment_mesh(), which count as the cylinder through their crests.
+/// not. A cylinder is as long as its outward wall: bores, which may run on, do not count. Round walls that face inwards
+/// (bores) have no width of their own. The widths of a box are those of the pairs of facets by which jaw_grasps() holds
+/// it (visit_opposite_facets(); facets lie opposite each other over at least `min_contact` [m], > 0). `labels`: the
+/// segment of each face, as in MeshSegmentation. Throws InvalidInput when there is not one label >= 0 a face, or for
+/// threads of other meshes. Nothing when the monitor stops it. A number below the largest label that no face has is an
+/// empty segment: a box of no size, without widths. `threads`: those found by segment_mesh(), which count as the
+/// cylinder through their crests.
 MMGRASP_EXPORT std::vector<FittedPrimitive> fit_primitives(const TriangleMesh& mesh, const std::vector<int>& labels,
                                                            const std::vector<ScrewThread>& threads = {},
-                                                           const Monitor& monitor = {});
+                                                           const Monitor& monitor = {},
+                                                           double min_contact = OppositeFacetsOptions{}.min_contact);
 
 /// A name for each segment: the kind of its primitive and its place among those of the kind, from 1, in the order of
 /// the segments, which segment_mesh() gives by size: "cylinder_1", "box_1", "cylinder_2".

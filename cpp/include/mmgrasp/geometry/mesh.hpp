@@ -40,10 +40,10 @@ struct MMGRASP_EXPORT MeshReport {
 };
 
 /// Reads STL, OBJ, PLY or DAE; merges equal vertices, drops degenerate triangles, orients a closed mesh outwards
-/// (cavities inwards). `scale` multiplies per axis. Files without a unit count as metres; a DAE's unit and node
-/// transforms are honoured, its up axis is not: URDF tools show DAE coordinates as they stand. Throws IoError naming
-/// the file (and line where there are lines) when it is missing, truncated, empty, no mesh or holds a non-finite
-/// number; InvalidInput for a bad scale.
+/// (cavities inwards), faces of an open one as their neighbours. `scale` multiplies per axis. Files without a unit
+/// count as metres; a DAE's unit and node transforms count, its up axis does not: URDF tools show DAE coordinates as
+/// they stand. Throws IoError naming the file (and line where there are lines) when it is missing, truncated, empty, no
+/// mesh or holds a non-finite number; InvalidInput for a bad scale.
 MMGRASP_EXPORT std::shared_ptr<const TriangleMesh> load_mesh(const std::string& path,
                                                              const Eigen::Vector3d& scale = Eigen::Vector3d::Ones(),
                                                              MeshReport* report = nullptr);

@@ -4,31 +4,30 @@
 
 #include "mmgrasp/core/export.hpp"
 #include "mmgrasp/geometry/mesh.hpp"
+#include "mmgrasp/geometry/opposite_facets.hpp"
 #include "mmgrasp/grasp/finger_length_range.hpp"
 
 namespace mmgrasp {
 
 /// The fingers that jaw_grasps() and centric_grasps() put at a segment, and how densely they try approaches.
 struct MMGRASP_EXPORT AssemblyGraspOptions {
-  double facet_angle = 0.1;      ///< Faces of one facet bend no more than this from its largest one [rad]; in (0, 0.5].
-  double parallel_angle = 0.05;  ///< Facets held between jaws are off parallel by no more [rad]; in (0, 0.5].
-  int directions = 12;  ///< Approaches in a turn about the closing axis, or turns of centric fingers; in [1, 360].
-  double min_contact = 0.003;  ///< Length along the approach by which a pad must overlap the segment [m], > 0.
-  double pad_length = 0.02;    ///< Length of a pad along the approach [m], >= min_contact.
-  double max_opening = 0.25;   ///< Wider segments are left out [m], > 0.
+  double facet_angle =
+      OppositeFacetsOptions{}
+          .facet_angle;  ///< Faces of one facet bend no more than this from its largest one [rad]; in (0, 0.5].
+  double parallel_angle =
+      OppositeFacetsOptions{}
+          .parallel_angle;  ///< Facets held between jaws are off parallel by no more [rad]; in (0, 0.5].
+  int directions = 12;      ///< Approaches in a turn about the closing axis, or turns of centric fingers; in [1, 360].
+  double min_contact =
+      OppositeFacetsOptions{}
+          .min_contact;       ///< Length along the approach by which a pad must overlap the segment [m], > 0.
+  double pad_length = 0.02;   ///< Length of a pad along the approach [m], >= min_contact.
+  double max_opening = 0.25;  ///< Wider segments are left out [m], > 0.
   double finger_width = 0.015, finger_thickness = 0.008, clearance = 0.002;  ///< See AssemblyGrasp [m].
   double tip_clearance = 0;    ///< Tips end this short of the far end of what they hold, as far as min_contact
                                ///< lets them [m], >= 0.
   double palm_margin = 0.005;  ///< The palm reaches beyond the open fingers by this [m], >= 0.
   void check() const;          ///< Throws InvalidInput naming field, value and rule.
-};
-
-/// A nearly plane piece of a surface (P1 5.3.3, planar clustering).
-struct MMGRASP_EXPORT Facet {
-  std::vector<int> faces;                             ///< Indices of the mesh's faces, ascending.
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< Outwards, weighted by area.
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();   ///< Centre of its area [m].
-  double area = 0;                                    ///< [m^2]
 };
 
 /// A cylinder that fits a segment: z is its axis, `low` and `high` its ends along it.
@@ -37,11 +36,6 @@ struct MMGRASP_EXPORT CylinderFit {
   double diameter = 0;       ///< [m], > 0.
   double low = 0, high = 0;  ///< [m], low < high.
 };
-
-/// Nearly plane pieces of a mesh, or of some of its faces (empty: all), largest first: each grows from the largest face
-/// left over edges, as long as faces bend no more than `angle` [rad] from it.
-MMGRASP_EXPORT std::vector<Facet> planar_facets(const TriangleMesh& mesh, const std::vector<int>& faces = {},
-                                                double angle = 0.1);
 
 /// Grasps by two parallel jaws: pairs of opposite, nearly parallel facets of a segment (`faces`; empty: the whole mesh)
 /// whose shadows on each other overlap, approached from every direction across the closing axis; the tips reach past

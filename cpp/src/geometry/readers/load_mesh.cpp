@@ -4,11 +4,9 @@
 #include <cmath>
 #include <filesystem>
 
-#include "geometry/faces_inwards.hpp"
 #include "geometry/readers/mesh_readers.hpp"
 #include "mmgrasp/core/detail/file_content.hpp"
 #include "mmgrasp/core/limits.hpp"
-#include "mmgrasp/geometry/detail/inside_out.hpp"
 
 namespace mmgrasp {
 
@@ -28,7 +26,8 @@ detail::RawMesh read_mesh(const std::string& path, std::string_view content) {
 }  // namespace
 
 std::shared_ptr<const TriangleMesh> detail::parse_mesh(const std::string& path, std::string_view content,
-                                                       const Eigen::Vector3d& scale, MeshReport* report) {
+                                                       const Eigen::Vector3d& scale, MeshReport* report,
+                                                       MeshFaults* faults) {
   for (int k = 0; k < 3; ++k) {
     require_number(scale[k], "mesh scale of '" + path + "'");
     require(scale[k] != 0, "mesh scale of '" + path + "'", scale[k], "must be finite and not zero");
@@ -45,14 +44,14 @@ std::shared_ptr<const TriangleMesh> detail::parse_mesh(const std::string& path, 
   if (scale.prod() < 0) {  // A mirrored surface keeps its outside.
     for (auto& triangle : raw.triangles) std::swap(triangle[1], triangle[2]);
   }
-  auto mesh = detail::clean_mesh(std::move(raw), path, report);
+  auto mesh = detail::clean_mesh(std::move(raw), path, report, faults);
   if (mesh->triangles.empty()) detail::mesh_error(path, "holds no triangle with an area");
   return mesh;
 }
 
-bool detail::file_is_inside_out(const std::string& path) {
-  const RawMesh raw = read_mesh(path, file_content(path, "mesh file"));
-  return faces_inwards(raw.vertices, raw.triangles);
+std::shared_ptr<const TriangleMesh> detail::load_mesh(const std::string& path, const Eigen::Vector3d& scale,
+                                                      MeshFaults& faults) {
+  return parse_mesh(path, file_content(path, "mesh file"), scale, nullptr, &faults);
 }
 
 std::shared_ptr<const TriangleMesh> load_mesh(const std::string& path, const Eigen::Vector3d& scale,

@@ -26,7 +26,8 @@ RawMesh read_dae(const std::string& path, std::string_view content);
 
 /// load_mesh for a file's content already in memory; the extension of `path` names the format.
 std::shared_ptr<const TriangleMesh> parse_mesh(const std::string& path, std::string_view content,
-                                               const Eigen::Vector3d& scale, MeshReport* report);
+                                               const Eigen::Vector3d& scale, MeshReport* report,
+                                               MeshFaults* faults = nullptr);
 
 /// Adds the polygon as a fan of triangles.
 void add_polygon(RawMesh& mesh, const std::vector<int>& corners);

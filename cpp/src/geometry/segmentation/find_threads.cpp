@@ -7,10 +7,12 @@
 #include <complex>
 #include <map>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include "geometry/segmentation/face_graph.hpp"
 #include "geometry/segmentation/refine_models.hpp"
+#include "geometry/segmentation/thread_faces.hpp"
 #include "geometry/segmentation/unwinding.hpp"
 #include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
@@ -27,6 +29,8 @@ constexpr double kLeastTurns = 2;
 constexpr double kInPhase = 0.3;
 /// Edges this far from the common angle belong to the root [rad].
 constexpr double kPhase = 0.8;
+/// Along a pitch edges in phase go around by this share of a turn at least.
+constexpr double kFullTurn = 0.4;
 /// Pitches looked for, in radii of the root.
 constexpr double kFinest = 0.02, kCoarsest = 1.5;
 /// The pitch is sought in so much of a thread above and below its middle, in radii of the root.
@@ -36,20 +40,8 @@ constexpr double kRadius = 0.15;
 /// Edges that differ more in direction from the helix are left out of its fit: the sine of the angle.
 constexpr double kDirection = 0.35;
 constexpr int kFits = 4;
-/// Cosine to the axis of the normals of faces across it: steeper than the flanks of metric threads.
-constexpr double kAcross = 0.9;
 /// Longest chains tried.
 constexpr std::size_t kMostChains = 12;
-/// Depth of a thread from root to crest, in pitches; metric threads have 0.61, square ones 0.5.
-constexpr double kDeepest = 1.0;
-
-/// Noise moves vertices between the ends of a thread out of it by up to so many times what they may be off elsewhere.
-constexpr double kLoose = 3;
-
-struct Helix {
-  Vector3d axis = Vector3d::UnitZ(), point = Vector3d::Zero();
-  double pitch_per_radian = 0;  ///< Along the axis [m/rad].
-};
 
 /// The screw motion along which the edges run: each edge e at x is parallel to moment + axis x x (least squares over
 /// the six coordinates, edges weighted by their length).
@@ -93,30 +85,6 @@ std::optional<Helix> fit_helix(const FaceGraph& graph, const std::vector<int>& c
   out.point = middle + size * axis.cross(moment) / axis.squaredNorm();
   return out;
 }
-
-/// Height, radius and direction from the axis of a point in a helix' frame.
-struct Place {
-  double height, radius;
-  Vector3d outward;
-};
-
-Place place_at(const Helix& helix, const Vector3d& x) {
-  const Vector3d d = x - helix.point;
-  Place out;
-  out.height = d.dot(helix.axis);
-  const Vector3d radial = d - out.height * helix.axis;
-  out.radius = radial.norm();
-  out.outward = out.radius > 0 ? Vector3d(radial / out.radius) : Vector3d::Zero();
-  return out;
-}
-
-struct Range {
-  double low = kInfinity, high = -kInfinity;
-  void add(double x) {
-    low = std::min(low, x);
-    high = std::max(high, x);
-  }
-};
 
 /// Turns and moves the axis so that the chain's vertices lie at one distance from it.
 void refine_axis(const FaceGraph& graph, const std::vector<int>& chain, Helix& helix) {
@@ -166,7 +134,7 @@ std::vector<int> edges_along(const FaceGraph& graph, const std::vector<int>& all
     poll();
     const FaceBorder& b = graph.borders[k];
     const Vector3d u = graph.vertices[b.vertices[0]], v = graph.vertices[b.vertices[1]];
-    const Place at = place_at(helix, 0.5 * (u + v));
+    const HelixPlace at = place_at(helix, 0.5 * (u + v));
     const Vector3d motion = helix.axis.cross(at.outward) * at.radius + helix.pitch_per_radian * helix.axis;
     if (b.length <= 0 || motion.norm() <= 0 || std::abs(at.radius - median) > reach) continue;
     if (((v - u) / b.length).cross(motion.normalized()).norm() < kDirection) out.push_back(k);
@@ -180,10 +148,10 @@ std::optional<std::vector<int>> edges_in_phase(const FaceGraph& graph, const std
   const Vector3d side = helix.axis.unitOrthogonal(), across = helix.axis.cross(side);
   std::vector<HelixTurn> turns;
   double length = 0, radius = 0;
-  Range heights;
+  HelixSpan heights;
   for (const int k : edges) {
     const FaceBorder& b = graph.borders[k];
-    const Place at = place_at(helix, 0.5 * (graph.vertices[b.vertices[0]] + graph.vertices[b.vertices[1]]));
+    const HelixPlace at = place_at(helix, 0.5 * (graph.vertices[b.vertices[0]] + graph.vertices[b.vertices[1]]));
     turns.push_back({std::atan2(at.outward.dot(across), at.outward.dot(side)), at.height, b.length, k});
     length += b.length;
     radius += b.length * at.radius;
@@ -195,7 +163,7 @@ std::optional<std::vector<int>> edges_in_phase(const FaceGraph& graph, const std
   // may with noise.
   const double middle = (heights.low + heights.high) / 2;
   std::vector<HelixTurn> near;
-  Range looked_at;
+  HelixSpan looked_at;
   length = 0;
   for (const HelixTurn& t : turns) {
     if (std::abs(t.height - middle) > kLookedAt * radius) continue;
@@ -225,14 +193,59 @@ std::optional<std::vector<int>> edges_in_phase(const FaceGraph& graph, const std
   return out;
 }
 
+/// Of edges in phase those of one thread: where they go nearly all around, turn upon turn. A ring at the root's radius,
+/// on a shaft far from the thread, has a quarter of its edges in phase; noise has a few anywhere.
+std::vector<int> edges_of_one_thread(const FaceGraph& graph, const std::vector<int>& edges, const Helix& helix) {
+  struct RootEdge {
+    double height, turned;  // turned: the angle that it goes around the axis [rad]
+    int number;
+  };
+  std::vector<RootEdge> sorted;
+  for (const int k : edges) {
+    const FaceBorder& b = graph.borders[k];
+    const Vector3d u = graph.vertices[b.vertices[0]], v = graph.vertices[b.vertices[1]];
+    const HelixPlace at = place_at(helix, 0.5 * (u + v));
+    const double turned = std::abs((v - u).dot(helix.axis.cross(at.outward))) / std::max(at.radius, 1e-300);
+    sorted.push_back({at.height, turned, k});
+  }
+  std::sort(sorted.begin(), sorted.end(), [](const RootEdge& a, const RootEdge& b) {
+    return std::tie(a.height, a.number) < std::tie(b.height, b.number);
+  });
+  std::vector<double> up_to{0};
+  for (const RootEdge& e : sorted) up_to.push_back(up_to.back() + e.turned);
+  const double pitch = 2 * kPi * std::abs(helix.pitch_per_radian);
+  const auto first_from = [&](double height) {
+    const auto at = std::lower_bound(sorted.begin(), sorted.end(), height,
+                                     [](const RootEdge& e, double h) { return e.height < h; });
+    return static_cast<std::size_t>(at - sorted.begin());
+  };
+  std::vector<std::vector<int>> runs;
+  std::vector<double> lengths;
+  double last = -kInfinity;
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    const double below = up_to[i + 1] - up_to[first_from(sorted[i].height - pitch)];
+    const double above = up_to[first_from(sorted[i].height + pitch)] - up_to[i];
+    if (std::max(below, above) < kFullTurn * 2 * kPi) continue;
+    if (sorted[i].height - last > pitch) {
+      runs.emplace_back();
+      lengths.push_back(0);
+    }
+    last = sorted[i].height;
+    runs.back().push_back(sorted[i].number);
+    lengths.back() += sorted[i].turned;
+  }
+  if (runs.empty()) return {};
+  return runs[std::max_element(lengths.begin(), lengths.end()) - lengths.begin()];
+}
+
 /// Whether the edges run at one radius for long enough.
-bool is_thread_root(const FaceGraph& graph, const std::vector<int>& edges, const Helix& helix, Range& heights,
+bool is_thread_root(const FaceGraph& graph, const std::vector<int>& edges, const Helix& helix, HelixSpan& heights,
                     double& radius) {
   double length = 0, turned = 0, mean = 0, square = 0;
   for (const int k : edges) {
     const FaceBorder& b = graph.borders[k];
     const Vector3d u = graph.vertices[b.vertices[0]], v = graph.vertices[b.vertices[1]];
-    const Place at = place_at(helix, 0.5 * (u + v));
+    const HelixPlace at = place_at(helix, 0.5 * (u + v));
     if (at.radius <= 0) continue;
     length += b.length;
     turned += std::abs((v - u).dot(helix.axis.cross(at.outward))) / at.radius;
@@ -288,71 +301,6 @@ std::vector<std::vector<int>> root_chains(const FaceGraph& graph) {
   return chains;
 }
 
-/// The thread around a root: faces no higher or lower than half a pitch beyond it, from the root to the crest.
-std::optional<ScrewThread> thread_around(const FaceGraph& graph, const Helix& helix, const Range& heights,
-                                         double root) {
-  const double pitch = 2 * kPi * std::abs(helix.pitch_per_radian), slack = 0.05 * pitch + 3e-3 * root;
-  const auto faces_between = [&](double low, double high) {
-    std::vector<int> faces;
-    InterruptionPoll poll;
-    for (int f = 0; f < graph.size(); ++f) {
-      poll();
-      double off = 0;  // how far it reaches out of the thread's radii
-      bool inside = true, beyond = false, at_root = true;
-      for (const int v : graph.faces[f]) {
-        const Place at = place_at(helix, graph.vertices[v]);
-        inside = inside && at.height > heights.low - 0.75 * pitch && at.height < heights.high + 0.75 * pitch;
-        off = std::max({off, low - at.radius, at.radius - high});
-        beyond = beyond || at.height < heights.low || at.height > heights.high;
-        at_root = at_root && std::abs(at.radius - root) < slack;
-      }
-      // Between the ends of the root there is nothing but the thread, whose noise may be as large as its faces.
-      if (!inside || off > (beyond ? slack : kLoose * slack)) continue;
-      // Past the ends of the root lie the shaft that the thread ends on and the face of a head or shoulder.
-      if (beyond && (at_root || std::abs(graph.normals[f].dot(helix.axis)) > kAcross)) continue;
-      faces.push_back(f);
-    }
-    return faces;
-  };
-  const auto area_of = [&](const std::vector<int>& faces) {
-    double area = 0;
-    for (const int f : faces) area += graph.areas[f];
-    return area;
-  };
-  const std::vector<int> outside = faces_between(root, root + kDeepest * pitch);
-  const std::vector<int> inside = faces_between(root - kDeepest * pitch, root);
-  const bool external = area_of(outside) >= area_of(inside);
-  // The crest, from vertices between the ends of the root: what nearly all of them reach at most.
-  std::vector<double> depths;
-  for (const int f : external ? outside : inside) {
-    for (const int v : graph.faces[f]) {
-      const Place at = place_at(helix, graph.vertices[v]);
-      if (at.height < heights.low || at.height > heights.high) continue;
-      depths.push_back(external ? at.radius - root : root - at.radius);
-    }
-  }
-  if (depths.empty()) return std::nullopt;
-  const auto last = depths.begin() + static_cast<std::ptrdiff_t>(0.98 * static_cast<double>(depths.size() - 1));
-  std::nth_element(depths.begin(), last, depths.end());
-  const double crest = external ? root + *last : root - *last;
-  ScrewThread out;
-  out.faces = external ? faces_between(root, crest) : faces_between(crest, root);
-  if (out.faces.empty()) return std::nullopt;
-  Range span;
-  for (const int f : out.faces) {
-    for (const int v : graph.faces[f]) span.add(place_at(helix, graph.vertices[v]).height);
-  }
-  const bool right_handed = helix.pitch_per_radian > 0;
-  out.pitch = right_handed ? pitch : -pitch;
-  out.root_radius = root;
-  out.crest_radius = crest;
-  if (std::abs(out.crest_radius - out.root_radius) < 0.1 * pitch) return std::nullopt;
-  out.length = span.high - span.low;
-  out.T_mesh_thread.linear() = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), helix.axis).toRotationMatrix();
-  out.T_mesh_thread.translation() = helix.point + 0.5 * (span.low + span.high) * helix.axis;
-  return out;
-}
-
 }  // namespace
 
 std::vector<ScrewThread> find_threads(const TriangleMesh& mesh) {
@@ -371,9 +319,8 @@ std::vector<ScrewThread> find_threads(const TriangleMesh& mesh) {
   if (chains.size() > kMostChains) chains.resize(kMostChains);
   for (const std::vector<int>& chain : chains) {
     throw_if_interrupted();
-    const auto known = std::count_if(chain.begin(), chain.end(), [&](int k) {
-      return taken[graph.borders[k].first] || taken[graph.borders[k].second];
-    });
+    const auto on_known = [&](int k) { return taken[graph.borders[k].first] || taken[graph.borders[k].second]; };
+    const auto known = std::count_if(chain.begin(), chain.end(), on_known);
     if (2 * known > static_cast<std::ptrdiff_t>(chain.size())) continue;  // another start or piece of the same thread
     std::optional<Helix> helix = fit_helix(graph, chain);
     std::vector<int> along = chain;
@@ -383,17 +330,20 @@ std::vector<ScrewThread> find_threads(const TriangleMesh& mesh) {
     }
     if (!helix) continue;
     refine_axis(graph, along, *helix);
-    const std::optional<std::vector<int>> turns = edges_in_phase(graph, along, *helix);
-    if (!turns) continue;
-    refine_axis(graph, *turns, *helix);
-    Range heights;
+    const std::optional<std::vector<int>> in_phase = edges_in_phase(graph, along, *helix);
+    if (!in_phase) continue;
+    const std::vector<int> turns = edges_of_one_thread(graph, *in_phase, *helix);
+    if (turns.empty()) continue;
+    refine_axis(graph, turns, *helix);
+    HelixSpan heights;
     double root = 0;
-    if (!is_thread_root(graph, *turns, *helix, heights, root)) continue;
+    if (!is_thread_root(graph, turns, *helix, heights, root)) continue;
     std::optional<ScrewThread> thread = thread_around(graph, *helix, heights, root);
     if (!thread) continue;
     const auto again = std::count_if(thread->faces.begin(), thread->faces.end(), [&](int f) { return taken[f] != 0; });
     if (2 * again > static_cast<std::ptrdiff_t>(thread->faces.size())) continue;
     for (const int f : thread->faces) taken[f] = 1;
+    roots.erase(std::remove_if(roots.begin(), roots.end(), on_known), roots.end());
     out.push_back(std::move(*thread));
   }
   return out;

@@ -8,8 +8,10 @@
 #include <string>
 
 #include "geometry/segmentation/find_threads.hpp"
+#include "geometry/segmentation/jaw_widths.hpp"
 #include "geometry/segmentation/segment_surface.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/geometry/detail/inside_out.hpp"
 
 namespace mmgrasp {
@@ -21,8 +23,6 @@ using Eigen::Vector3d;
 constexpr double kSmooth = 0.766;
 /// Faces this close to parallel to a box' face, and this close to it as a share of the segment's size, lie on it.
 constexpr double kParallel = 0.99, kOnBox = 0.02;
-/// Opposite faces are offered when at least this share of each is surface.
-constexpr double kLeastCover = 0.1;
 constexpr int kDirections = 64;
 
 /// The direction that most of the area faces, to both sides, of those across `axis` (zero: any). Zero when there is
@@ -85,14 +85,6 @@ FittedPrimitive box_along(const SegmentSurface& s, const Eigen::Matrix3d& axes) 
   out.deviation = all > 0 ? s.scale * off / all : 0;
   out.T_mesh_primitive.linear() = axes;
   out.T_mesh_primitive.translation() = s.to_mesh(axes * (0.5 * (low + high)));
-  for (int k = 0; k < 3; ++k) {
-    const double face = size[(k + 1) % 3] * size[(k + 2) % 3];
-    if (face <= 0 || size[k] <= 0) continue;
-    const double covered = std::min(1.0, std::min(area[k][0], area[k][1]) / face);
-    if (covered >= kLeastCover) out.widths.push_back({out.size[k], axes.col(k), covered});
-  }
-  std::stable_sort(out.widths.begin(), out.widths.end(),
-                   [](const GraspWidth& a, const GraspWidth& b) { return a.covered > b.covered; });
   return out;
 }
 
@@ -197,7 +189,9 @@ const char* primitive_kind_name(PrimitiveKind kind) {
 }
 
 std::vector<FittedPrimitive> fit_primitives(const TriangleMesh& mesh, const std::vector<int>& labels,
-                                            const std::vector<ScrewThread>& threads, const Monitor& monitor) {
+                                            const std::vector<ScrewThread>& threads, const Monitor& monitor,
+                                            double min_contact) {
+  require_positive(min_contact, "min_contact", "m");
   require(labels.size() == mesh.triangles.size(), "labels", static_cast<double>(labels.size()),
           "must be one a face, " + std::to_string(mesh.triangles.size()));
   std::vector<std::vector<int>> segments;
@@ -233,7 +227,10 @@ std::vector<FittedPrimitive> fit_primitives(const TriangleMesh& mesh, const std:
       round.trim();
       best = std::move(round.primitive);
     }
-    if (best.kind == PrimitiveKind::box) best.volume = best.size.prod();
+    if (best.kind == PrimitiveKind::box) {
+      best.volume = best.size.prod();
+      best.widths = detail::jaw_widths(outward, faces, best, min_contact);
+    }
     best.hull_volume = hull_volume;
     if (monitor.stopped()) return {};
     out.push_back(std::move(best));

@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "mmgrasp/geometry/detail/mesh_topology.hpp"
+
 namespace mmgrasp::detail {
 
 /// n . (x, y) <= d.
@@ -21,6 +23,14 @@ inline std::vector<Eigen::Vector3d> clip_polygon(const std::vector<Eigen::Vector
     if ((da < 0 && db > 0) || (da > 0 && db < 0)) out.push_back(a + da / (da - db) * (b - a));
   }
   return out;
+}
+
+/// Area of a convex polygon's shadow in x and y; positive when it turns counter-clockwise.
+inline double shadow_area(const std::vector<Eigen::Vector3d>& polygon) {
+  double area = 0;
+  for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
+    area += edge_side((polygon[i] - polygon[0]).head<2>(), (polygon[i + 1] - polygon[0]).head<2>()) / 2;
+  return area;
 }
 
 }  // namespace mmgrasp::detail

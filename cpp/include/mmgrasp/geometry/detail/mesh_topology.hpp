@@ -14,6 +14,11 @@ struct Shells {
 /// triangles untouched, when an edge is not shared by pairs of triangles or the surface is one-sided.
 bool orient_closed(const std::vector<Eigen::Vector3d>& vertices, std::vector<std::array<int, 3>>& triangles);
 
+/// Turns the triangles of an open mesh that look another way than their neighbours over edges of two triangles: each
+/// shell then looks away from its middle or, where it encloses nothing, as most of its area did. Shells at one with
+/// themselves stay as they are. False, with the triangles untouched, when the surface is one-sided.
+bool orient_open(const std::vector<Eigen::Vector3d>& vertices, std::vector<std::array<int, 3>>& triangles);
+
 /// Triangles grouped by shared edges; works for open meshes too.
 Shells find_shells(const std::vector<std::array<int, 3>>& triangles);
 

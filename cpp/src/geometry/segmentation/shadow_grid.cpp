@@ -1,4 +1,4 @@
-#include "grasp/assembly/shadow_grid.hpp"
+#include "geometry/segmentation/shadow_grid.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -18,7 +18,8 @@ const std::vector<OptionField<GraspSamplerOptions>>& sampler_fields() {
   static const std::vector<OptionField<O>> fields{
       option<O>("approaches", &O::approaches, "approach directions around each closing axis"),
       option<O>("positions", &O::positions, "pad positions along each free direction"),
-      option<O>("mesh_samples", &O::mesh_samples, "surface points tried on a mesh"),
+      option<O>("mesh_samples", &O::mesh_samples,
+                "surface points tried on a mesh, eight times as many where few pairs fit the hand"),
       option<O>("max_grasps", &O::max_grasps, "best kept, spread over approach directions"),
       option<O>("friction", &O::friction, "Coulomb coefficient"),
       option<O>("standoff", &O::standoff, "how far the tool frame stays outside the object's middle [m]"),

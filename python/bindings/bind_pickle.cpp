@@ -53,6 +53,8 @@ py::object made_group(const py::handle& state) {
   return py::cast(detail::group_of(py::cast<const Robot&>(values[0]), Packed<detail::GroupRecord>::to(values[1])));
 }
 
+constexpr char kNotOurs[] = "a pickle of another version of mmgrasp, or a damaged one";
+
 constexpr char kMemo[] = "dict[int, object]";
 constexpr char kObject[] = "object";
 using Memo = Shown<kMemo>;
@@ -94,8 +96,18 @@ void bind_pickle(py::module_& m) {
       "_from_pickle",
       [](const py::type& kind, const AnyObject& state) -> AnyObject {
         const PickleFunctions* functions = pickle_of(kind);
-        if (functions == nullptr) throw py::type_error("a pickle of another version of mmgrasp");
-        return functions->make(state);
+        if (functions == nullptr) throw py::type_error(kNotOurs);
+        try {
+          return functions->make(state);
+        } catch (const py::builtin_exception&) {  // a number or a length of another kind than expected
+          throw py::type_error(kNotOurs);
+        } catch (const py::error_already_set& error) {
+          if (!error.matches(PyExc_TypeError) && !error.matches(PyExc_LookupError) && !error.matches(PyExc_ValueError))
+            throw;
+          throw py::type_error(kNotOurs);
+        } catch (const InvalidInput&) {
+          throw py::type_error(kNotOurs);
+        }
       },
       py::arg("kind"), py::arg("state"));
   py::object base = py::type::of<Robot>().attr("__mro__").attr("__getitem__")(-2);

@@ -71,6 +71,11 @@ REFUSED = {
     "reference": (BOX.replace('"#g"', '"#&#103;"'), "url must hold no '&'"),
     "holes": (collada(f'<polygons count="1">{VERTEX}<ph><p>0 1 3</p></ph></polygons>').decode(), "holes are not read"),
     "skin": (BOX.replace("instance_geometry", "instance_controller"), "is no link of a robot"),
+    "skew": (BOX.replace('<node id="n">', '<node id="n"><skew>0 1 0 0 0 1 0</skew>'), "<skew> of a node is not read"),
+    "an id twice": (
+        collada(WHOLE + '<source id="p"><float_array id="pb" count="0"></float_array></source>' + WHOLE).decode(),
+        "<source> has the id of another: 'p'",
+    ),
     "circle": (collada(WHOLE, f'<node id="a">{placed("a")}</node>').decode(), "more than 200 deep (a circle?)"),
     "circle of two": (
         collada(WHOLE, placed("a"), f'<node id="a">{placed("b")}</node><node id="b">{placed("a")}</node>').decode(),

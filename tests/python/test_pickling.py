@@ -7,6 +7,7 @@ import copy
 import dataclasses
 import multiprocessing
 import pickle
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -185,10 +186,37 @@ def test_states_of_other_versions_are_refused() -> None:
     reduced: Any = mg.Box([1, 2, 3]).__reduce_ex__(4)
     kind, state = reduced[1]
     for other in ((), (*state, 1), (1,), ((3, 1, b""),), ((2, 1, b"0" * 16),), None, b""):
-        with pytest.raises((TypeError, ValueError, RuntimeError, IndexError)):
+        with pytest.raises(TypeError, match="another version of mmgrasp"):
             _core._from_pickle(kind, other)
     with pytest.raises(TypeError):
         _core._from_pickle(mg.World, ())
+
+
+def changed_somewhere(state: Any, number: int) -> Iterator[Any]:
+    """The state with one of its whole numbers replaced, for each of them."""
+    if isinstance(state, int) and not isinstance(state, bool):
+        yield number
+    elif isinstance(state, tuple):
+        for i, one in enumerate(state):
+            yield from ((*state[:i], other, *state[i + 1 :]) for other in changed_somewhere(one, number))
+
+
+@pytest.mark.parametrize("number", [1_000_000, -7, 0])
+def test_indices_of_forged_robots_lead_nowhere_and_are_refused(number: int) -> None:
+    """A link or joint that is not there ended the process."""
+    reduced: Any = ARM.robot.__reduce_ex__(4)
+    kind, state = reduced[1]
+    refused = 0
+    for forged in changed_somewhere(state, number):
+        try:
+            _core._from_pickle(kind, forged).group(ARM.name).fk(Q)
+        except (TypeError, mg.Error):
+            refused += 1
+    assert number == 0 or refused > 20
+    for forged in ((0, (10_000,)), (2, 10_000)):  # the joints of a group, its tip
+        robot, record = ARM.__reduce_ex__(4)[1][1]  # type: ignore[index]
+        with pytest.raises(TypeError, match="another version of mmgrasp"):
+            _core._from_pickle(type(ARM), (robot, (*record[: forged[0]], forged[1], *record[forged[0] + 1 :])))
 
 
 def test_scenarios_and_their_plans(small_path: Path) -> None:

@@ -7100,7 +7100,7 @@ def _sample_grasps(object: collections.abc.Sequence[LinkShape], gripper: Hand, *
     Keyword options:
         approaches: int = 8  # approach directions around each closing axis
         positions: int = 3  # pad positions along each free direction
-        mesh_samples: int = 400  # surface points tried on a mesh
+        mesh_samples: int = 400  # surface points tried on a mesh, eight times as many where few pairs fit the hand
         max_grasps: int = 200  # best kept, spread over approach directions
         friction: float = 0.5  # Coulomb coefficient
         standoff: float = 0.0  # how far the tool frame stays outside the object's middle [m]
@@ -7906,7 +7906,7 @@ def sample_grasps(object: collections.abc.Sequence[LinkShape], gripper: Hand, *,
     Keyword options:
         approaches: int = 8  # approach directions around each closing axis
         positions: int = 3  # pad positions along each free direction
-        mesh_samples: int = 400  # surface points tried on a mesh
+        mesh_samples: int = 400  # surface points tried on a mesh, eight times as many where few pairs fit the hand
         max_grasps: int = 200  # best kept, spread over approach directions
         friction: float = 0.5  # Coulomb coefficient
         standoff: float = 0.0  # how far the tool frame stays outside the object's middle [m]

@@ -194,6 +194,18 @@ TEST(SurfaceGrasps, AWedgeNeedsFrictionForHalfItsAngleOnEachSide) {
   EXPECT_GT(across(0.40), 0);
 }
 
+TEST(SurfaceGrasps, AKnobOnALargeBlockIsFound) {
+  // The knob has 1 % of the surface; the rest is wider than the hand opens.
+  const std::vector<LinkShape> block{shape_at(Box{{0.3, 0.3, 0.2}}),
+                                     shape_at(Cylinder{0.015, 0.03}, pose_from_xyz_rpy({0, 0, 0.115}, {0, 0, 0}))};
+  Hand hand;
+  GraspSamplerOptions options;
+  for (unsigned seed = 1; seed <= 8; ++seed) {
+    options.seed = seed;
+    EXPECT_FALSE(sample_grasps(block, hand, options).grasps.empty()) << seed;
+  }
+}
+
 TEST(SurfaceGrasps, TooWidePairsEqualARecountWithAWiderGripper) {
   const auto mesh = shape_mesh(Cylinder{0.03, 0.09});
   GraspSamplerOptions options;

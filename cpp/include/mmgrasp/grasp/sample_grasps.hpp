@@ -13,7 +13,7 @@ namespace mmgrasp {
 struct MMGRASP_EXPORT GraspSamplerOptions {
   int approaches = 8;  ///< Approach directions around each closing axis; > 0.
   int positions = 3;   ///< Pad positions along each free direction of a box or cylinder (odd: the middle first); > 0.
-  int mesh_samples = 400;  ///< Surface points tried on a mesh; > 0.
+  int mesh_samples = 400;  ///< Surface points tried on a mesh, eight times as many where few pairs fit the hand; > 0.
   int max_grasps = 200;    ///< Best kept, spread over approach directions; > 0.
   /// Coulomb coefficient; an antipodal pair's normals lie within atan(friction) of its axis; > 0.
   double friction = 0.5;

@@ -61,8 +61,8 @@ const Names kPrimitives = {"triangles", "polylist", "polygons", "tristrips", "tr
 /// Those that the importer stores; it forgets others, and the places that they take in <p> with them.
 const Names kSemantics = {"VERTEX",  "POSITION",   "NORMAL",   "TEXCOORD",   "COLOR",
                           "TANGENT", "TEXTANGENT", "BINORMAL", "TEXBINORMAL"};
-const std::map<std::string_view, std::size_t> kTransforms = {{"matrix", 16}, {"translate", 3}, {"rotate", 4},
-                                                             {"scale", 3},   {"skew", 7},      {"lookat", 9}};
+const std::map<std::string_view, std::size_t> kTransforms = {
+    {"matrix", 16}, {"translate", 3}, {"rotate", 4}, {"scale", 3}, {"lookat", 9}};
 
 struct DaeAccessor {
   std::string_view array;
@@ -151,7 +151,11 @@ class DaeCheck {
   void open(const XmlTag& tag) {
     require(tag.name != "instance_controller", tag, "a skin that bends with its bones is no link of a robot");
     require(tag.name != "ph", tag, "polygons with holes are not read");
+    require(tag.name != "skew", tag, "of a node is not read: a <matrix> says the same");
     for (const std::string_view key : {"id", "url", "source"}) plain(tag, key);
+    const std::string_view id = tag.attribute("id");
+    require(id.empty() || ids_.insert(id).second, tag,
+            "has the id of another: '" + std::string(id.substr(0, 40)) + "'");
     open_ = tag;
     if (tag.name == "geometry") instances_.begin_geometry(tag.attribute("id"));
     if (tag.name == "mesh") vertex_inputs_.clear(), vertex_id_ = {};
@@ -307,6 +311,7 @@ class DaeCheck {
   std::string out_;
   XmlTag open_;                           ///< The last one: lists hold no elements.
   std::vector<std::string_view> within_;  ///< Elements that are open, those left out not among them.
+  Names ids_;                             ///< Those seen, each once.
   int left_out_ = 0;                      ///< How deep in what is left out.
   bool begins_with_root_ = false;
   std::map<std::string_view, std::size_t> arrays_;  ///< Numbers of each <float_array>.

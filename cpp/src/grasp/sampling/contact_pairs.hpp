@@ -37,8 +37,9 @@ struct ContactPairs {
 std::optional<ContactPairs> primitive_pairs(const LinkShape& shape, const Hand& hand,
                                             const GraspSamplerOptions& options);
 
-/// Pairs by rays through the union of all shapes' surfaces.
-ContactPairs surface_pairs(const std::vector<LinkShape>& object, const GraspSamplerOptions& options);
+/// Pairs by rays through the union of all shapes' surfaces; more of them where few are no wider than max_opening [m].
+ContactPairs surface_pairs(const std::vector<LinkShape>& object, double max_opening,
+                           const GraspSamplerOptions& options);
 
 /// Any unit vector orthogonal to a unit vector; the same for the same input.
 Eigen::Vector3d orthogonal_to(const Eigen::Vector3d& axis);

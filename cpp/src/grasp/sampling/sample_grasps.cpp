@@ -160,7 +160,7 @@ SampledGrasps sample_grasps(const std::vector<LinkShape>& object, const Hand& ha
 
   std::optional<ContactPairs> pairs;
   if (object.size() == 1) pairs = detail::primitive_pairs(object.front(), hand, options);
-  if (!pairs) pairs = detail::surface_pairs(object, options);
+  if (!pairs) pairs = detail::surface_pairs(object, hand.max_opening, options);
 
   const Candidates candidates(*pairs, hand, options);
   return {detail::keep_spread(candidates.all(), options.max_grasps), candidates.too_wide()};

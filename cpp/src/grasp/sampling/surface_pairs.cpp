@@ -12,6 +12,8 @@
 namespace mmgrasp::detail {
 namespace {
 
+constexpr int kMoreSamples = 8;  // So many times the samples are drawn at most, of a body that the hand can take at few
+constexpr int kFew = 4;          // places: fewer than one in so many samples.
 constexpr double kSamePlace = 1e-7;  // Hits nearer than this share of the body's size are one.
 
 /// Hits at which the line leaves the union of solids, when it enters that union at t = 0; none when the start is buried
@@ -78,7 +80,8 @@ void add_pairs_from(const SurfacePoint& start, const Eigen::Vector3d& direction,
 
 }  // namespace
 
-ContactPairs surface_pairs(const std::vector<LinkShape>& object, const GraspSamplerOptions& options) {
+ContactPairs surface_pairs(const std::vector<LinkShape>& object, double max_opening,
+                           const GraspSamplerOptions& options) {
   JoinedSurface surface = joined_surface(object);
   ContactPairs result;
   if (surface.mesh.triangles.empty()) return result;
@@ -91,13 +94,18 @@ ContactPairs surface_pairs(const std::vector<LinkShape>& object, const GraspSamp
   const SurfacePoints points(surface.mesh);
   const double tolerance = kSamePlace * bounds.diagonal().norm();
   const double cone = std::atan(options.friction);
-  for (int i = 0; i < options.mesh_samples; ++i) {
+  const auto fits = [&](const ContactPair& pair) { return pair.width <= max_opening; };
+  const int most = kMoreSamples * options.mesh_samples;
+  std::size_t judged = 0;
+  int fitting = 0;
+  for (int i = 0; i < most && (i < options.mesh_samples || fitting < options.mesh_samples / kFew); ++i) {
     Rng rng(options.seed, static_cast<std::uint64_t>(i));
     const SurfacePoint start = points.draw(rng);
     const Eigen::Vector3d inward = -start.normal;
     // Along the normal the first contact is perfect; tilted lines also find wedges that need friction on both sides.
     const Eigen::Vector3d direction = i % 2 == 0 ? inward : sample_in_cone(inward, cone, rng);
     add_pairs_from(start, direction, caster, surface.solid, tolerance, cone, result.pairs);
+    for (; judged < result.pairs.size(); ++judged) fitting += fits(result.pairs[judged]);
   }
   result.surface = std::move(surface);
   return result;

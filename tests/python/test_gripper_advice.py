@@ -101,6 +101,7 @@ OPTIONS = (
     ("a min_contact of", "min_contact", 0.0),  # more may do where tips give up tip_clearance
     ("opening_margin =", "opening_margin", SLIGHTLY),
     ("clearance =", "clearance", SLIGHTLY),
+    ("a clearance of", "clearance", 0.0),  # a half, a quarter or an eighth of what was asked for
 )
 DRIVE = (
     rf"\w+: a drive with (\d) fingers, a stroke of {NUMBER} and an opening of up to {NUMBER} would do"

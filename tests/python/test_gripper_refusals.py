@@ -125,3 +125,39 @@ def test_operations_without_a_way_past_other_parts_are_told(file_of: Callable[..
 def test_the_palm_covers_the_open_fingers() -> None:
     gripper = Gripper(max_opening=0.05, finger_thickness=0.008, finger_width=0.015)
     assert gripper.palm_radius == pytest.approx(np.hypot(0.033, 0.0075))
+
+
+@pytest.mark.parametrize(
+    ("key", "changes"),
+    [
+        ("actuators[0].stroke", {"unit": "m", "actuators": [{"name": "jaws", "fingers": 2, "stroke": 10}]}),
+        ("actuators[0].max_opening", {"actuators": [{"name": "a", "fingers": 2, "stroke": 9, "max_opening": 3001}]}),
+        ("fingers.width", {"fingers": {"width": 3001}}),
+    ],
+)
+def test_drives_and_fingers_of_metres_are_refused(
+    file_of: Callable[..., Path], capsys: pytest.CaptureFixture[str], key: str, changes: dict[str, Any]
+) -> None:
+    parts = [{"name": "key", "box": [0.03, 0.012, 0.02]}]
+    more = {"parts": parts, "order": [{"part": "key"}]} if "unit" in changes else {}
+    assert main(["grippers", str(file_of(**changes, **more)), "-o", "unused", "--no-pictures"]) == 2
+    assert re.search(rf"key.yaml:\d+: {re.escape(key)} = \d+: must be at most \d+ \(3 m\)", capsys.readouterr().err)
+
+
+def test_help_names_a_smaller_clearance_and_contact(
+    tmp_path: Path, file_of: Callable[..., Path], capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Walls 4 mm off all sides: fingers of 3 mm pass them where they open by less than 1 mm."""
+    parts = yaml.safe_load(file_of().read_text())["parts"]
+    for name, size, at in (
+        ("a", [60, 5, 30], [0, 12.5]), ("b", [60, 5, 30], [0, -12.5]), ("c", [5, 20, 30], [21.5, 0]), ("d", [5, 20, 30], [-21.5, 0])
+    ):  # fmt: skip
+        parts.append({"name": name, "box": size, "pose": {"xyz": [*at, 15]}})
+    order = [{"part": "key", "onto": ["plate", *"abcd"], "from": {"xyz": [0, 0, 50]}}]
+    file = file_of(parts=parts, order=order, fingers={"thickness": 3, "clearance": 8})
+    assert main(["grippers", str(file), "-o", str(tmp_path / "out"), "--no-pictures"]) in (3, 4)
+    printed = " ".join(capsys.readouterr().out.split())
+    told = re.search(r"key: a clearance of ([0-9.]+) mm would do", printed)
+    assert told, printed
+    helped = file_of(parts=parts, order=order, fingers={"thickness": 3, "clearance": float(told[1])})
+    assert main(["grippers", str(helped), "-o", str(tmp_path / "helped"), "--no-pictures"]) == 0

@@ -214,7 +214,8 @@ def test_indices_of_forged_robots_lead_nowhere_and_are_refused(number: int) -> N
             refused += 1
     assert number == 0 or refused > 20
     for forged in ((0, (10_000,)), (2, 10_000)):  # the joints of a group, its tip
-        robot, record = ARM.__reduce_ex__(4)[1][1]  # type: ignore[index]
+        whole: Any = ARM.__reduce_ex__(4)
+        robot, record = whole[1][1]
         with pytest.raises(TypeError, match="another version of mmgrasp"):
             _core._from_pickle(type(ARM), (robot, (*record[: forged[0]], forged[1], *record[forged[0] + 1 :])))
 

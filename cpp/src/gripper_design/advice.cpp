@@ -124,6 +124,12 @@ void advise_strokes(const Judgement& by, Advice& advice) {
   }
 }
 
+std::vector<double> smaller(double length) {
+  std::vector<double> out;
+  for (const double share : {0.5, 0.25, 0.125}) out.push_back(hundredths_down(share * length));
+  return out;
+}
+
 /// The largest of some values that are smaller than the option's, if one helps.
 void advise_less(const Judgement& by, double PlanGrippersOptions::*option, const std::string& name,
                  std::vector<double> values, Advice& advice) {
@@ -131,7 +137,7 @@ void advise_less(const Judgement& by, double PlanGrippersOptions::*option, const
   for (const double value : values) {
     if (at_most(by.options.*option, value)) continue;
     const std::size_t before = advice.said().size();
-    advice.try_option(option, value, name + " = " + printed(value) + " would do");
+    advice.try_option(option, value, name + printed(value) + " would do");
     if (advice.said().size() > before) return;
   }
 }
@@ -150,6 +156,9 @@ std::vector<std::string> advice_without_grasp(const Judgement& by, const Remedy&
   if (remedy.min_contact > 0)
     advice.try_option(&O::min_contact, contact, "a min_contact of " + printed(contact) + " would do");
   advise_drives(by, remedy, advice);
+  if (remedy.min_contact <= 0)
+    advise_less(by, &O::min_contact, "a min_contact of ", smaller(by.options.min_contact), advice);
+  advise_less(by, &O::clearance, "a clearance of ", smaller(by.options.clearance), advice);
   return advice.said();
 }
 
@@ -162,8 +171,8 @@ std::vector<std::string> advice_without_drive(const Judgement& by, const Monitor
     margins.push_back(hundredths_down(a.stroke / 2));
     clearances.push_back(hundredths_down((a.stroke - by.options.opening_margin) / 2));
   }
-  advise_less(by, &O::opening_margin, "opening_margin", margins, advice);
-  advise_less(by, &O::clearance, "clearance", clearances, advice);
+  advise_less(by, &O::opening_margin, "opening_margin = ", margins, advice);
+  advise_less(by, &O::clearance, "clearance = ", clearances, advice);
   return advice.said();
 }
 

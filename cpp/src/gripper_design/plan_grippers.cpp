@@ -255,16 +255,34 @@ class Planning {
             result_.parts, keep_off_,  untouchable_};
   }
 
+  /// Segments from that fate on by what they were refused for, in the order in which reasons come first.
+  std::vector<std::pair<std::string, std::vector<std::string>>> by_reason(std::size_t first) const {
+    std::vector<std::pair<std::string, std::vector<std::string>>> found;
+    for (std::size_t i = first; i < result_.fates.size(); ++i) {
+      const SegmentFate& f = result_.fates[i];
+      const auto known = std::find_if(found.begin(), found.end(), [&](const auto& r) { return r.first == f.refused; });
+      std::vector<std::string>& names =
+          known == found.end() ? found.emplace_back(f.refused, std::vector<std::string>()).second : known->second;
+      names.push_back(f.part + "/" + f.name);
+    }
+    return found;
+  }
+
+  static std::string some_of(const std::vector<std::string>& names) {
+    constexpr std::size_t kTold = 3;
+    std::string text = names.front();
+    for (std::size_t i = 1; i < std::min(names.size(), kTold); ++i) text += ", " + names[i];
+    if (names.size() > kTold) text += " and " + std::to_string(names.size() - kTold) + " more";
+    return text;
+  }
+
   void tell_missing(const Judgement& by, std::size_t first, const Remedy& remedy) {
     std::string why = by.operation.name + ": no segment can be held";
     // Grasps are tried in steps: only where there are none to try, it is proven that there is none.
     const auto tried = [](const SegmentFate& f) { return f.tried > 0; };
     if (std::none_of(result_.fates.begin() + static_cast<std::ptrdiff_t>(first), result_.fates.end(), tried))
       impossible_ = true;
-    for (std::size_t i = first; i < result_.fates.size(); ++i) {
-      const SegmentFate& f = result_.fates[i];
-      why += "; " + f.part + "/" + f.name + ": " + f.refused;
-    }
+    for (const auto& [refused, names] : by_reason(first)) why += "; " + some_of(names) + ": " + refused;
     result_.missing.push_back(why);
     monitor_.report("what would help", 0);
     tell_help(advice_without_grasp(by, remedy, monitor_));

@@ -18,7 +18,7 @@ from .._files import ASSETS, shipped
 from ..documents.reading import Node, near_miss, read_yaml
 from ..scenario.robot_section import find_file
 from .part_mesh import load_part_mesh
-from .part_size import UNITS, wrong_size
+from .part_size import LARGEST_PART, UNITS, wrong_size
 from .turned_parts import SIDES, block, meeting_edges, turned
 
 Pose = NDArray[np.float64]
@@ -368,13 +368,21 @@ def _read_holding(root: Node, scale: float) -> HoldingChoice | None:
     return choice
 
 
+def _read_length(node: Node, scale: float, *, may_be_zero: bool = False) -> float:
+    """A length of a drive or a finger [m]."""
+    length = (node.number(least=0) if may_be_zero else node.number(above=0)) * scale
+    if length > LARGEST_PART:
+        node.fail(f"must be at most {LARGEST_PART / scale:g} ({LARGEST_PART:g} m), as parts for a gripper are")
+    return length
+
+
 def _read_actuator(node: Node, scale: float) -> GripperActuator:
     node.mapping("name fingers stroke", "max_opening cost")
     fingers = node["fingers"].integer()
     if fingers not in (2, 3):
         node["fingers"].fail("must be 2 or 3")
-    stroke = node["stroke"].number(above=0) * scale
-    widest = node["max_opening"].number(above=0) * scale if "max_opening" in node else None
+    stroke = _read_length(node["stroke"], scale)
+    widest = _read_length(node["max_opening"], scale) if "max_opening" in node else None
     if widest is not None and widest < stroke:
         node["max_opening"].fail("must be at least the stroke")
     cost = node["cost"].number(above=0) if "cost" in node else 1.0
@@ -395,9 +403,9 @@ def _read_fingers(root: Node, scale: float, largest_part: float) -> FingerChoice
             if choice.directions > 360:
                 value.fail("must be at most 360")
         elif key in ("clearance", "opening_margin", "length_margin", "tip_clearance"):
-            setattr(choice, key, value.number(least=0) * scale)
+            setattr(choice, key, _read_length(value, scale, may_be_zero=True))
         else:
-            setattr(choice, key, value.number(above=0) * scale)
+            setattr(choice, key, _read_length(value, scale))
     if choice.tip_clearance > largest_part:
         rule = "must be no longer than the largest part that is moved"
         node["tip_clearance"].fail(f"{rule}, {largest_part / scale:.4g} from corner to corner")

@@ -154,7 +154,9 @@ void bind_platform_locations(py::module_& m) {
         if (!camera_link.is_none()) {
           MountedCamera mounted;
           if (camera) mounted.camera = *camera;
-          mounted.link = checker.group().robot().link_index(py::cast<std::string>(camera_link));
+          std::string link;
+          convert(camera_link, "camera_link", link);
+          mounted.link = checker.group().robot().link_index(link);
           if (!T_link_camera.is_none()) mounted.T_link_camera = pose_argument(T_link_camera, "T_link_camera");
           problem.camera = mounted;
         }

@@ -64,7 +64,9 @@ std::map<std::string, std::string> package_argument(const py::object& value) {
   if (value.is_none()) return out;
   if (!py::isinstance<py::dict>(value)) refuse_value("package_dirs", value, "a dict from package name to folder");
   for (const auto& [key, folder] : py::cast<py::dict>(value)) {
-    out[py::cast<std::string>(key)] = path_argument(folder, "package_dirs");
+    std::string package;
+    convert(key, "package_dirs", package);
+    out[package] = path_argument(folder, "package_dirs");
   }
   return out;
 }
@@ -150,16 +152,22 @@ std::vector<std::string> movable_joints(const Robot& robot) {
   return names;
 }
 
+std::string text_argument(const OptionalText& value, const char* name) {
+  std::string text;
+  convert(value, name, text);
+  return text;
+}
+
 JointGroup make_group(const Robot& robot, const OptionalText& name, const OptionalText& tip,
                       const OptionalText& base_link, bool with_base) {
-  const std::string tip_name = tip.is_none() ? "" : py::cast<std::string>(tip);
+  const std::string tip_name = tip.is_none() ? "" : text_argument(tip, "tip");
   if (base_link.is_none()) {
     if (name.is_none()) throw InvalidInput("group(): give the name of an SRDF group, or base_link and tip");
-    return robot.group(py::cast<std::string>(name), tip_name, with_base);
+    return robot.group(text_argument(name, "name"), tip_name, with_base);
   }
   if (!name.is_none()) throw InvalidInput("group(): give a group name or base_link, not both");
   if (tip.is_none()) throw InvalidInput("group(base_link=...): tip is missing");
-  return robot.chain(py::cast<std::string>(base_link), tip_name, with_base);
+  return robot.chain(text_argument(base_link, "base_link"), tip_name, with_base);
 }
 
 constexpr char kUrdfRows[] = "list[mmgrasp.records.UrdfRow]";

@@ -350,6 +350,7 @@ OTHERS: dict[str, Any] = {
     "attached": lambda: False,
     "kind": lambda: "approach",
     "name": lambda: "fresh",
+    "_mesh_with_faults.path": lambda: CORPUS / "stl" / "tetrahedron.stl",
     "World.add_mesh.path": lambda: CORPUS / "stl" / "tetrahedron.stl",
     "LinkShape.mesh.path": lambda: CORPUS / "stl" / "tetrahedron.stl",
     "World.add_octree.path": lambda: CORPUS / "bt" / "one_leaf.bt",

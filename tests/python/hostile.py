@@ -40,7 +40,7 @@ class Part(NamedTuple):
 
 
 PARTS = {
-    "texts": Part("YAML and JSON texts", "yaml_text file_fuzz key_fuzz option_bounds floor_map",
+    "texts": Part("YAML and JSON texts", "yaml_text file_fuzz key_fuzz option_bounds floor_map gripper_refusals",
                   ("file_fuzz.py {scenario} 20000", "file_fuzz.py plan 20000", *(f"key_fuzz.py {door}" for door in
                    ("scenario", "scanned", "pipe", "assembly", "profile", "gripper", "sensors", "map", "plan")))),
     "frames": Part("frames and maps of surfaces", "frames_fuzz map_file_fuzz scan_refusals"),

@@ -24,7 +24,7 @@ CHEAP = {
         RobotSource RobotSource.add_link RobotSource.add_urdf SegmentRequirement Sphere SupportingPlane ToolRegion Tray World
         NonlinearProblem copper beam_frame round_section rectangular_section default_grasp_search eigengrasp_hand tray_shapes
         joint_limit_objective singularity_objective camera_view_objective self_distance_objective pose look_down
-        verify.PlanToCheck verify.Fault
+        verify.PlanToCheck verify.Fault _from_pickle
         """,
     "a text or arrays are made of a result": """
         write_plan segment_names

@@ -98,3 +98,12 @@ def test_what_is_missing_or_damaged_is_told_at_once(tmp_path: Path) -> None:
     with pytest.raises(mg.IoError, match="configurations"):
         mg.ReachDatabase.load(tmp_path / "saved")
     assert time.process_time() - begun < 5
+
+
+def test_who_may_read_it_stays_as_it_was(tmp_path: Path) -> None:
+    one, other = databases()
+    one.save(tmp_path / "database")
+    (tmp_path / "database").chmod(0o700)
+    other.save(tmp_path / "database")
+    assert (tmp_path / "database").stat().st_mode & 0o777 == 0o700
+    assert loaded_database(str(tmp_path / "database")) == len(other)

@@ -15,7 +15,7 @@ namespace mmgrasp::detail {
 
 namespace {
 
-constexpr double kNoVolume = 1e-15;  // Of the cube of the diagonal: rounding.
+constexpr double kNoVolume = 1e-15;  // As a share of the cube of the diagonal: rounding.
 
 using Triangles = std::vector<std::array<int, 3>>;
 

@@ -27,11 +27,13 @@ def meeting_edges(profile: ArrayLike) -> tuple[int, int] | None:
     Points on the axis may meet: no surface goes through them.
     """
     rows = np.asarray(profile, dtype=float)
-    begin = [i for i in range(len(rows)) if not np.array_equal(rows[i], rows[(i + 1) % len(rows)])]
+    extent = float(np.ptp(rows, axis=0).max())
+    steps = np.abs(np.roll(rows, -1, axis=0) - rows).max(axis=1)
+    begin = np.flatnonzero(steps > 1e-12 * extent)  # points nearer than that are one
     a = rows[begin]
     b = np.roll(a, -1, axis=0)
     with_surface = (a[:, 0] > 0) | (b[:, 0] > 0)
-    rounding = 1e-12 * float(np.ptp(rows, axis=0).max()) ** 2
+    rounding = 1e-12 * extent**2
     for i in np.flatnonzero(with_surface):
         along, later = b[i] - a[i], np.arange(i + 1, len(a))
         # On which side of edge i the ends of the others lie, and the other way round; 0: on its line.

@@ -25,7 +25,7 @@ struct MMGRASP_EXPORT OppositeFacets {
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();   ///< Columns: two along the facets, and out of the first.
   std::vector<std::vector<Eigen::Vector3d>> overlap{};  ///< Convex pieces of both shadows; x and y in `axes` [m].
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();     ///< Centre of the overlap's area in `axes` [m].
-  double area = 0;                                      ///< Of the overlap [m^2].
+  double area = 0;                                      ///< The overlap's [m^2].
   double width = 0;                                     ///< From one to the other in the middle of the overlap [m].
   double height = 0;                                    ///< Half way between them there, along the third axis [m].
 };

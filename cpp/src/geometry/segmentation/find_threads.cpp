@@ -193,8 +193,8 @@ std::optional<std::vector<int>> edges_in_phase(const FaceGraph& graph, const std
   return out;
 }
 
-/// Of edges in phase those of one thread: where they go nearly all around, turn upon turn. A ring at the root's radius,
-/// on a shaft far from the thread, has a quarter of its edges in phase; noise has a few anywhere.
+/// Those of one thread among edges in phase: where they go nearly all around, turn upon turn. A ring at the root's
+/// radius, on a shaft far from the thread, has a quarter of its edges in phase; noise has a few anywhere.
 std::vector<int> edges_of_one_thread(const FaceGraph& graph, const std::vector<int>& edges, const Helix& helix) {
   struct RootEdge {
     double height, turned;  // turned: the angle that it goes around the axis [rad]

@@ -182,6 +182,8 @@ void put_in_place(const std::string& written, const std::string& path) {
   int strange = 0;
   while (strange < kLooks && is_something_else(path, written)) ++strange;
   if (strange == kLooks) refuse(path, "cannot be written: something else stands there that saving would remove");
+  if (const fs::file_status before = fs::status(path, error); fs::is_directory(before))
+    fs::permissions(written, before.permissions(), error);  // who may read it stays as it was
   // Others may do the same at the same time; the last one stays.
   constexpr int kAttempts = 20;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {

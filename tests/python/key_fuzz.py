@@ -221,9 +221,15 @@ def fuzz(door: str, folder: Path, most: int | None = None, seed: int = 1) -> Res
 
 
 def unneeded(door: str, needed: set[tuple[str, str]]) -> list[str]:
-    """Entries of the list that no change of the document needed; those of places that it does not have are left out."""
+    """Entries of the list that no change of the document needed; those of places that it does not have are left out, and
+    those that are judged where a door before this one has the same list and such a place."""
     sound = DOORS[door].sound
     there = {entry for place in places(document_of(door)) for entry in listed(place, sound)}
+    for other in DOORS:
+        if other == door:
+            break
+        if DOORS[other].sound is sound:
+            there -= {entry for place in places(document_of(other)) for entry in listed(place, sound)}
     return [f"{door}: {name}: {kind}: listed as sound, but refused" for kind, name in sorted(there - needed)]
 
 

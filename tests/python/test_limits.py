@@ -111,7 +111,7 @@ ELSEWHERE = {
     "places that are written": "test_output_places.py: def test_places_that_cannot_be_written_are_found_at_once(",
     "what others write in the meantime": "test_output_folder.py: def test_what_somebody_writes_in_the_meantime_is_not_replaced(",
     "route search": "test_base_route.cpp: TEST(BaseRoute, ASearchThatRanOutSaysSo)",
-    "`mmgrasp grippers`": "test_grippers_command.py: def test_mesh_files_that_cannot_be_parts(",
+    "`mmgrasp grippers`": "test_assembly_meshes.py: def test_mesh_files_that_cannot_be_parts(",
     "`plan_grippers`": "test_rehearsed_set.cpp: EndsAfterSoManyRehearsalsAndWhenItIsStopped)",
     "`minimal_grippers`, `solve_set_cover`": "test_minimal_grippers.cpp: RefusesCostsThatTheProofWouldNotTellApart)",
     "set cover": "test_interrupt.py: def test_a_set_cover_is_interrupted_at_any_moment(",

@@ -12,23 +12,18 @@
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/random.hpp"
 #include "support/fetchlike.hpp"
+#include "support/fetchlike_drive.hpp"
 #include "support/vec.hpp"
 
 namespace mmgrasp {
 namespace {
 
 using Eigen::VectorXd;
+using test::grasp_at;
 using test::vec;
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
-const VectorXd kStart = VectorXd::Zero(10);
-const VectorXd kGoal = vec({10, 0, -1, 1.13, 0.3, 1.9, 1.1, 2.1, 0.5, 2.5});
-
-DriveByTask grasp_at(const Pose& T) {
-  DriveByTask task;
-  task.candidates = {T};
-  return task;
-}
+const VectorXd &kStart = test::kDriveStart, &kGoal = test::kDriveGoal;
 
 /// What a solved plan promises, looked at from outside.
 void expect_sound(const DriveByResult& r, const std::vector<DriveByTask>& tasks) {

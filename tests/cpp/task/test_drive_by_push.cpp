@@ -6,24 +6,17 @@
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/task/drive_by.hpp"
 #include "support/fetchlike.hpp"
-#include "support/vec.hpp"
+#include "support/fetchlike_drive.hpp"
 
 // Hands that close while they drive on.
 namespace mmgrasp {
 namespace {
 
 using Eigen::VectorXd;
-using test::vec;
+using test::grasp_at;
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
-const VectorXd kStart = VectorXd::Zero(10);
-const VectorXd kGoal = vec({10, 0, -1, 1.13, 0.3, 1.9, 1.1, 2.1, 0.5, 2.5});
-
-DriveByTask grasp_at(const Pose& T) {
-  DriveByTask task;
-  task.candidates = {T};
-  return task;
-}
+const VectorXd &kStart = test::kDriveStart, &kGoal = test::kDriveGoal;
 
 }  // namespace
 

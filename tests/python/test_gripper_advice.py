@@ -73,6 +73,24 @@ def any_drive(rng: np.random.Generator) -> dict[str, Any]:
     return {"actuators": [jaws(30), jaws(16, None, "chuck", 3)]}
 
 
+def narrow_gap(rng: np.random.Generator) -> dict[str, Any]:
+    """Walls about a block leave less than fingers and their way to open take."""
+    half = rng.uniform(8, 30, 3).round(1)
+    gap = round(float(rng.uniform(3.5, 9)), 2)
+    walls = []
+    for axis, side in ((0, 1), (0, -1), (1, 1), (1, -1)):
+        size, place = 2 * (half + gap), np.zeros(3)
+        size[axis], size[2] = 4, 2 * half[2] + 10
+        place[axis] = side * (half[axis] + gap + 2)
+        pose = {"xyz": [float(v) for v in place]}
+        walls.append({"name": f"wall {axis} {side}", "box": [float(s) for s in size], "pose": pose})
+    return {
+        **any_drive(rng),
+        "parts": [{"name": "part", "box": [float(2 * h) for h in half]}, *walls],
+        "order": [{"part": "part", "onto": [w["name"] for w in walls], "from": {"xyz": [0, 0, 100]}}],
+    }
+
+
 @pytest.fixture
 def planned(tmp_path: Path) -> Callable[[dict[str, Any]], GripperPlan]:
     """The plan of a file that says this of an assembly in mm whose one part comes from above."""
@@ -96,12 +114,14 @@ def with_drive(content: dict[str, Any], drive: dict[str, Any], *, alone: bool) -
 
 
 OPTIONS = (
-    ("fingers of", "longest", -SLIGHTLY),
-    ("fingers as short as", "shortest", SLIGHTLY),
-    ("a min_contact of", "min_contact", 0.0),  # more may do where tips give up tip_clearance
-    ("opening_margin =", "opening_margin", SLIGHTLY),
-    ("clearance =", "clearance", SLIGHTLY),
-    ("a clearance of", "clearance", 0.0),  # a half, a quarter or an eighth of what was asked for
+    (f"fingers of {NUMBER}", "longest", -SLIGHTLY),
+    (f"fingers as short as {NUMBER}", "shortest", SLIGHTLY),
+    (f"fingers {NUMBER} thick", "thickness", SLIGHTLY),
+    (f"fingers {NUMBER} wide", "width", SLIGHTLY),
+    (f"a min_contact of {NUMBER}", "min_contact", 0.0),  # more may do where tips give up tip_clearance
+    (f"opening_margin = {NUMBER}", "opening_margin", SLIGHTLY),
+    (f"clearance = {NUMBER}", "clearance", SLIGHTLY),
+    (f"a clearance of {NUMBER}", "clearance", 0.0),  # a half, a quarter or an eighth of what was asked for
 )
 DRIVE = (
     rf"\w+: a drive with (\d) fingers, a stroke of {NUMBER} and an opening of up to {NUMBER} would do"
@@ -117,7 +137,7 @@ def with_stroke(content: dict[str, Any], name: str, stroke: float) -> dict[str, 
 def applied(content: dict[str, Any], advice: str) -> tuple[dict[str, Any], list[dict[str, Any]]]:
     """The file with a piece of advice in it, and files in which it is followed to slightly less than the least."""
     for text, key, less in OPTIONS:
-        if found := re.fullmatch(rf"\w+: {text} {NUMBER} would do", advice):
+        if found := re.fullmatch(rf"\w+: {text} would do", advice):
             value = float(found[1])
             return with_fingers(content, key, value), [with_fingers(content, key, value + less)] if less else []
     if found := re.fullmatch(rf"\w+: a stroke of {NUMBER} for '([\w ]+)' would do", advice):
@@ -147,6 +167,7 @@ def applied(content: dict[str, Any], advice: str) -> tuple[dict[str, Any], list[
         (block, short_fingers, 1, ("fingers of",)),
         (disc, short_fingers, 1, ("fingers of",)),
         (washer, any_drive, 1, ("min_contact",)),
+        (block, narrow_gap, 2, ("thick",)),
     ],
 )
 def test_advice_helps_as_it_is_printed(

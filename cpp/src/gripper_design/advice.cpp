@@ -12,6 +12,8 @@ namespace mmgrasp::detail {
 namespace {
 
 constexpr double kSlightly = 1e-4;  // The least of something does not help when it is smaller by this [m].
+constexpr double kThinnest = 1e-3;  // Thinner fingers are not advised [m].
+constexpr double kPrinted = 1e-5;   // Lengths are printed to this [m].
 constexpr int kPrintedDigits = 8;
 
 std::string printed(double length) {
@@ -142,6 +144,23 @@ void advise_less(const Judgement& by, double PlanGrippersOptions::*option, const
   }
 }
 
+/// The largest width or thickness of fingers with which the operation can be done, if one does: less of either meets
+/// less, so it is found by bisection.
+void advise_slimmer(const Judgement& by, double PlanGrippersOptions::*option, const std::string& name, Advice& advice) {
+  PlanGrippersOptions changed = by.options;
+  const auto helps = [&](double length) {
+    changed.*option = length;
+    return advice.helps(changed);
+  };
+  double slim = kThinnest, thick = by.options.*option;
+  if (slim >= thick || !helps(slim)) return;
+  while (thick - slim > 1.5 * kPrinted) {
+    const double between = hundredths_down((slim + thick) / 2);
+    (helps(between) ? slim : thick) = between;
+  }
+  advice.say("fingers " + printed(slim) + " " + name + " would do");
+}
+
 }  // namespace
 
 std::vector<std::string> advice_without_grasp(const Judgement& by, const Remedy& remedy, const Monitor& monitor) {
@@ -155,6 +174,8 @@ std::vector<std::string> advice_without_grasp(const Judgement& by, const Remedy&
     advice.try_option(&O::shortest_finger, shortest, "fingers as short as " + printed(shortest) + " would do");
   if (remedy.min_contact > 0)
     advice.try_option(&O::min_contact, contact, "a min_contact of " + printed(contact) + " would do");
+  advise_slimmer(by, &O::finger_thickness, "thick", advice);
+  advise_slimmer(by, &O::finger_width, "wide", advice);
   advise_drives(by, remedy, advice);
   if (remedy.min_contact <= 0)
     advise_less(by, &O::min_contact, "a min_contact of ", smaller(by.options.min_contact), advice);

@@ -2,7 +2,11 @@
 #include "gripper_design/fewest_changes.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
+#include "gripper_design/change_prices.hpp"
+#include "gripper_design/cover_prices.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/detail/stopwatch.hpp"
 
@@ -10,6 +14,16 @@ namespace mmgrasp::detail {
 namespace {
 
 constexpr double kSameCost = 1e-12;  // Share by which sums of the same costs in another order may differ.
+
+/// Steps by which prices are raised.
+struct PriceSteps {
+  int of_parts = 30, of_uses = 30;
+};
+constexpr PriceSteps kFirstSteps{600, 6000};  // Before anything is chosen.
+constexpr double kFirstWork = 2e8;            // Uses that these may look at.
+constexpr double kNodeWork = 2e4;    // Uses that count as a node.
+constexpr int kManyLess = 10;        // Where a tenth is left out, bounds are raised again,
+constexpr double kMoreChanges = 0.1;  // and where the bound was raised by this.
 
 /// Branch and bound over sets of grippers. In a set a gripper is kept for as long as one takes the next part, which
 /// needs fewest changes.
@@ -22,45 +36,51 @@ class Search {
         least_gripper_cost_(least_gripper_cost),
         options_(options),
         monitor_(monitor),
-        time_limit_(options.time_limit) {
+        time_limit_(options.time_limit),
+        cover_prices_(candidates),
+        change_prices_(candidates, part_count) {
     for (int g = 0; g < count(); ++g) {
       for (int p = candidates[g].parts.next(0); p >= 0; p = candidates[g].parts.next(p + 1)) takers_[p].set(g);
     }
   }
 
   FewestChanges run(const std::vector<int>& known) {
-    Bits all(count()), chosen(count()), uncovered(parts());
-    for (int g = 0; g < count(); ++g) all.set(g);
-    for (int p = 0; p < parts(); ++p) uncovered.set(p);
+    Bits chosen(count());
     for (const int g : known) chosen.set(g);
-    FewestChanges out;
-    out.changes_bound = changes_with(all);
     take_if_better(chosen);
     improve_by_exchange();
-    branch(Bits(count()), all, uncovered, 0);
+    FewestChanges out;
+    SearchPrices prices;
+    out.changes_bound = search(prices);
     out.best = best_;
     out.proven = complete_;
     return out;
   }
 
   /// The first choice found that is as good as `limit`; sets nodes() and complete().
-  std::optional<GripperChoice> as_good_as(const GripperChoice& limit) {
+  std::optional<GripperChoice> as_good_as(const GripperChoice& limit, SearchPrices& prices) {
     // Only what beats this is taken: as much in all, with one change more.
     best_.gripper_cost = limit.gripper_cost - options_.change_cost;
     best_.changes = limit.changes + 1;
     bounded_ = first_suffices_ = true;
-    Bits all(count()), uncovered(parts());
-    for (int g = 0; g < count(); ++g) all.set(g);
-    for (int p = 0; p < parts(); ++p) uncovered.set(p);
-    branch(Bits(count()), all, uncovered, 0);
+    search(prices);
     if (best_.of_part.empty()) return std::nullopt;
     return best_;
   }
 
-  int nodes() const { return nodes_; }
+  int nodes() const { return nodes_ + static_cast<int>(change_prices_.work() / kNodeWork); }
   bool complete() const { return complete_; }
 
  private:
+  /// Some of the sets that are searched, and what is known about those of them that are better than the best.
+  struct Node {
+    Bits chosen, allowed, uncovered;  // `allowed`: what may be chosen, and `chosen`.
+    double cost = 0;                  // Of `chosen`.
+    int changes = 0;                  // None needs fewer.
+    std::vector<double> part_prices;
+    ChangePrices::Prices use_prices;
+  };
+
   int count() const { return static_cast<int>(candidates_.size()); }
   int parts() const { return static_cast<int>(takers_.size()); }
   double total(double gripper_cost, int changes) const { return gripper_cost + options_.change_cost * changes; }
@@ -155,64 +175,131 @@ class Search {
     }
   }
 
-  /// What the uncovered parts cost at least: parts that share no taker are paid for one by one. Infinite when a part
-  /// has no taker left.
-  double cost_of_rest(const Bits& allowed, const Bits& uncovered) const {
-    std::vector<std::pair<int, int>> order;
-    for (int p = uncovered.first(); p >= 0; p = uncovered.next(p + 1)) {
-      Bits takers = takers_[p];
-      takers &= allowed;
-      const int size = takers.count();
-      if (size == 0) return kInfinity;
-      order.emplace_back(size, p);
-    }
-    std::sort(order.begin(), order.end());
-    Bits paid(count());
-    double cost = 0;
-    for (const auto& [size, p] : order) {
-      Bits takers = takers_[p];
-      takers &= allowed;
-      if (takers.meets(paid)) continue;
-      paid |= takers;
-      cost += cheapest(takers);
-    }
-    return cost;
-  }
-
   double cheapest(const Bits& grippers) const {
     double cost = kInfinity;
     for (int g = grippers.first(); g >= 0; g = grippers.next(g + 1)) cost = std::min(cost, candidates_[g].cost);
     return cost;
   }
 
+  bool out_of_time() const { return monitor_.stopped() || time_limit_.expired(); }
+
   bool ended() {
-    if (nodes_ % 256 == 0 && (monitor_.stopped() || time_limit_.expired())) complete_ = false;
-    if (nodes_ >= options_.max_nodes) complete_ = false;
+    if (out_of_time() || nodes() >= options_.max_nodes) complete_ = false;
     return !complete_ || (first_suffices_ && !best_.of_part.empty());
   }
 
-  /// `allowed` holds `chosen` and what may be chosen beside.
-  void branch(const Bits& chosen, Bits allowed, const Bits& uncovered, double chosen_cost) {
-    ++nodes_;
-    if (ended()) return;
-    const double rest = cost_of_rest(allowed, uncovered);
-    if (rest == kInfinity || no_better(chosen_cost + rest, changes_with(allowed))) return;
-    Bits open = allowed;
-    if (uncovered.first() < 0) {
-      take_if_better(chosen);
-      if (options_.change_cost == 0) return;  // Nothing more is paid for by fewer changes.
-      open -= chosen;
-      if (open.first() < 0 || no_better(chosen_cost + cheapest(open), changes_with(allowed))) return;
-    } else {
-      open &= takers_[part_of_fewest(allowed, uncovered)];
+  /// Searches all sets; no set that costs as little as the best one needs fewer changes than the answer.
+  int search(SearchPrices& prices) {
+    Node all{Bits(count()), Bits(count()), Bits(parts()), 0, 0, std::vector<double>(parts(), 0.0),
+             change_prices_.first_prices()};
+    for (int g = 0; g < count(); ++g) all.allowed.set(g);
+    for (int p = 0; p < parts(); ++p) all.uncovered.set(p);
+    PriceSteps steps = kFirstSteps;
+    if (!prices.empty()) {
+      all.part_prices = prices.of_part;
+      all.use_prices = change_prices_.compact(prices.of_use, prices.of_cost);
     }
-    for (const int g : by_new_parts(open, uncovered)) {
-      Bits with = chosen, still = uncovered;
-      with.set(g);
-      still -= candidates_[g].parts;
-      branch(with, allowed, still, chosen_cost + candidates_[g].cost);
-      if (!complete_ || (first_suffices_ && !best_.of_part.empty())) return;
-      allowed.reset(g);  // What follows is without it.
+    const double most = kFirstWork / static_cast<double>(change_prices_.use_count());
+    if (most < steps.of_uses) steps.of_uses = 1 + static_cast<int>(most);
+    const bool is_open = tighten(all, steps);
+    prices = {all.part_prices, change_prices_.spread(all.use_prices), all.use_prices.of_cost};
+    const int bound = all.changes;
+    if (is_open) split(std::move(all));
+    return complete_ ? best_.changes : std::min(bound, best_.changes);
+  }
+
+  void choose(int g, Node& node) const {
+    node.chosen.set(g);
+    node.uncovered -= candidates_[g].parts;
+    node.cost += candidates_[g].cost;
+  }
+
+  /// Chooses what alone takes a part; false when nothing does.
+  bool choose_forced(Node& node) const {
+    for (int p = node.uncovered.first(); p >= 0; p = node.uncovered.next(p + 1)) {
+      Bits takers = takers_[p];
+      takers &= node.allowed;
+      const int only = takers.first();
+      if (only < 0) return false;
+      if (takers.next(only + 1) < 0) choose(only, node);
+    }
+    return true;
+  }
+
+  /// Leaves out what is in no better set; false when there is no such set.
+  bool tighten(Node& node, const PriceSteps& steps) {
+    for (double before = 0;;) {
+      if (!choose_forced(node)) return false;
+      node.changes = std::max(node.changes, changes_with(node.allowed));
+      if (no_better(node.cost, node.changes)) return false;
+      if (node.uncovered.first() < 0) return true;
+      const double least_cost = node.cost + cover_prices_.raise(open(node), node.uncovered, steps.of_parts, room(node),
+                                                                node.part_prices);
+      if (no_better(least_cost, node.changes)) return false;
+      if (leave_out(node, [&](int g) {
+            return no_better(least_cost + std::max(0.0, cover_prices_.reduced_cost(g)), node.changes);
+          }) > 0)
+        continue;
+      const double changes = change_prices_.raise({node.allowed, node.chosen},
+                                                  {room(node), static_cast<double>(best_.changes - 1), steps.of_uses},
+                                                  node.use_prices, [&] { return out_of_time(); });
+      node.changes = std::max(node.changes, whole(changes));
+      if (no_better(least_cost, node.changes)) return false;
+      const int less = leave_out(node, [&](int g) {
+        return no_better(least_cost, whole(changes + std::max(0.0, change_prices_.reduced_cost(g))));
+      });
+      if (ended() || (kManyLess * less < open(node).count() && changes < before + kMoreChanges)) return complete_;
+      before = std::max(before, changes);
+    }
+  }
+
+  static int whole(double bound) { return static_cast<int>(std::ceil(std::max(0.0, bound))); }
+
+  Bits open(const Node& node) const {
+    Bits out = node.allowed;
+    out -= node.chosen;
+    return out;
+  }
+
+  /// What grippers beside the chosen ones may cost in a better set.
+  double room(const Node& node) const {
+    return total(best_.gripper_cost, best_.changes) * (1 + kSameCost) - total(node.cost, node.changes);
+  }
+
+  /// How many were left out, of those that may be chosen.
+  template <class IsNoBetter>
+  int leave_out(Node& node, const IsNoBetter& is_no_better) const {
+    int out = 0;
+    const Bits candidates = open(node);
+    for (int g = candidates.first(); g >= 0; g = candidates.next(g + 1)) {
+      if (!is_no_better(g)) continue;
+      node.allowed.reset(g);
+      ++out;
+    }
+    return out;
+  }
+
+  void branch(Node node) {
+    ++nodes_;
+    if (!ended() && tighten(node, {})) split(std::move(node));
+  }
+
+  void split(Node node) {
+    Bits next = node.allowed;
+    if (node.uncovered.first() < 0) {
+      take_if_better(node.chosen);
+      if (options_.change_cost == 0) return;  // Nothing more is paid for by fewer changes.
+      next -= node.chosen;
+      if (next.first() < 0 || no_better(node.cost + cheapest(next), changes_with(node.allowed))) return;
+    } else {
+      next &= takers_[part_of_fewest(node.allowed, node.uncovered)];
+    }
+    for (const int g : by_reduced_cost(next)) {
+      Node with = node;
+      choose(g, with);
+      branch(std::move(with));
+      if (ended()) return;
+      node.allowed.reset(g);  // What follows is without it.
     }
   }
 
@@ -230,16 +317,13 @@ class Search {
     return best;
   }
 
-  std::vector<int> by_new_parts(const Bits& grippers, const Bits& uncovered) const {
-    std::vector<std::pair<int, int>> order;
-    for (int g = grippers.first(); g >= 0; g = grippers.next(g + 1)) {
-      Bits parts = candidates_[g].parts;
-      parts &= uncovered;
-      order.emplace_back(-parts.count(), g);
-    }
+  std::vector<int> by_reduced_cost(const Bits& grippers) const {
+    std::vector<std::pair<double, int>> order;
+    for (int g = grippers.first(); g >= 0; g = grippers.next(g + 1))
+      order.emplace_back(change_prices_.reduced_cost(g), g);
     std::sort(order.begin(), order.end());
     std::vector<int> out;
-    for (const auto& [less, g] : order) out.push_back(g);
+    for (const auto& [cost, g] : order) out.push_back(g);
     return out;
   }
 
@@ -249,6 +333,8 @@ class Search {
   const MinimalGrippersOptions& options_;
   const Monitor& monitor_;
   TimeLimit time_limit_;
+  CoverPrices cover_prices_;
+  ChangePrices change_prices_;
   GripperChoice best_;
   bool bounded_ = false;         // best_ says what there is to beat.
   bool first_suffices_ = false;  // Whatever beats it ends the search.
@@ -265,10 +351,11 @@ FewestChanges fewest_changes(const std::vector<GripperCandidate>& candidates, in
 }
 
 ChoiceAsGood choice_as_good(const std::vector<GripperCandidate>& candidates, int part_count, const GripperChoice& limit,
-                            double least_gripper_cost, const MinimalGrippersOptions& options, const Monitor& monitor) {
+                            double least_gripper_cost, const MinimalGrippersOptions& options, const Monitor& monitor,
+                            SearchPrices& prices) {
   Search search(candidates, part_count, least_gripper_cost, options, monitor);
   ChoiceAsGood out;
-  out.found = search.as_good_as(limit);
+  out.found = search.as_good_as(limit, prices);
   out.nodes = search.nodes();
   out.decided = out.found || search.complete();
   return out;

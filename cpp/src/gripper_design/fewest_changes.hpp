@@ -27,6 +27,15 @@ FewestChanges fewest_changes(const std::vector<GripperCandidate>& candidates, in
                              const std::vector<int>& known, double least_gripper_cost,
                              const MinimalGrippersOptions& options, const Monitor& monitor);
 
+/// Prices by which a search bounds what it leaves out. Those of one search are a good beginning for another one among
+/// the same candidates when these take a little less or more.
+struct SearchPrices {
+  std::vector<double> of_part;
+  std::vector<double> of_use;  ///< By candidate and part: candidate times the number of parts, and the part.
+  double of_cost = 0;
+  bool empty() const { return of_part.empty(); }
+};
+
 /// An answer to whether grippers cost no more and change no more often than others.
 struct ChoiceAsGood {
   std::optional<GripperChoice> found;
@@ -35,8 +44,9 @@ struct ChoiceAsGood {
 };
 
 /// The same search for any choice whose cost (of grippers and changes) and number of changes are no higher than those
-/// of `limit`; it ends with the first one.
+/// of `limit`; it ends with the first one. Begins with `prices` unless they are empty, and leaves its own there.
 ChoiceAsGood choice_as_good(const std::vector<GripperCandidate>& candidates, int part_count, const GripperChoice& limit,
-                            double least_gripper_cost, const MinimalGrippersOptions& options, const Monitor& monitor);
+                            double least_gripper_cost, const MinimalGrippersOptions& options, const Monitor& monitor,
+                            SearchPrices& prices);
 
 }  // namespace mmgrasp::detail

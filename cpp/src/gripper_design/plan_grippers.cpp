@@ -26,6 +26,13 @@ namespace {
 
 using namespace detail;
 
+void check_passive(const AssemblyOperation& operation) {
+  std::set<std::string> names;
+  for (const PlacedMesh& part : operation.passive)
+    if (!names.insert(part.name).second)
+      throw InvalidInput("operation '" + operation.name + "': part '" + part.name + "' stays twice: names must differ");
+}
+
 void check_operations(const std::vector<AssemblyOperation>& operations) {
   if (operations.empty()) throw InvalidInput("operations is empty: name at least one");
   std::set<std::string> names;
@@ -35,6 +42,7 @@ void check_operations(const std::vector<AssemblyOperation>& operations) {
     if (!names.insert(o.name).second)
       throw InvalidInput("operation '" + o.name + "' is there twice: names must differ");
     o.check();
+    check_passive(o);
     for (const PlacedMesh& part : o.active) {
       if (part.name.empty()) throw InvalidInput("operation '" + o.name + "': a part has no name");
       if (!moved.emplace(part.name, part.mesh.get()).second)

@@ -222,7 +222,7 @@ class Preference {
     options.time_limit = std::max(clock_.seconds_left(), 1e-3);
     // Where changes cost something, the bound counts them, too.
     const double least_cost = options.change_cost > 0 ? 0 : least_.lower_bound;
-    const ChoiceAsGood answer = choice_as_good(allowed, parts_.count(), limit_, least_cost, options, monitor_);
+    const ChoiceAsGood answer = choice_as_good(allowed, parts_.count(), limit_, least_cost, options, monitor_, prices_);
     nodes_left_ -= answer.nodes;
     finished_ = finished_ && answer.decided;
     if (!answer.found || !as_good(*answer.found)) return false;
@@ -240,6 +240,7 @@ class Preference {
   std::vector<int> set_;                      // Candidates at hand,
   GripperChoice choice_;                      // and which of them takes which part.
   GripperChoice limit_;                       // Cost and changes of the least set.
+  SearchPrices prices_;                       // Of the last search.
   int run_end_ = 0;
   long nodes_left_ = 0;
   bool finished_ = true;

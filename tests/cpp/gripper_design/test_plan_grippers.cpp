@@ -116,6 +116,39 @@ TEST(PlanGrippers, WhatWouldHelpHelps) {
   EXPECT_EQ(plan_grippers(ring_on_peg(), {{"c", 3, 0.002, 0.021}}).outcome, Outcome::solved);
 }
 
+TEST(PlanGrippers, SlimmerFingersAreAdvisedWhereAGapIsTooNarrow) {
+  // A key of 30 x 12 x 20 mm with walls 5.5 mm off all its sides: fingers open by 2 mm to let go, 3.5 mm are left.
+  AssemblyOperation o;
+  o.name = "key";
+  o.active = {{"key", block({0.015, 0.006, 0.01}), at(0, 0, 0.01)}};
+  o.passive = {{"plate", block({0.1, 0.1, 0.005}), at(0, 0, -0.005)}};
+  for (const double side : {1.0, -1.0}) {
+    const std::string which = side > 0 ? "one" : "other";
+    o.passive.push_back({which + " along", block({0.03, 0.005, 0.015}), at(0, side * (0.006 + 0.0055 + 0.005), 0.015)});
+    o.passive.push_back({which + " across", block({0.005, 0.01, 0.015}), at(side * (0.015 + 0.0055 + 0.005), 0, 0.015)});
+  }
+  o.motion = {at(0, 0, 0.05), at(0, 0, 0)};
+  const std::vector<GripperActuator> jaws{{"jaws", 2, 0.03}};
+  PlanGrippersOptions options;
+  const std::vector<std::string> help = plan_grippers({o}, jaws, {}, options).help;
+  EXPECT_EQ(std::count(help.begin(), help.end(), "key: fingers 3.5 mm thick would do"), 1);
+  options.finger_thickness = 0.0035;
+  EXPECT_EQ(plan_grippers({o}, jaws, {}, options).outcome, Outcome::solved);
+  options.finger_thickness = 0.0036;
+  EXPECT_NE(plan_grippers({o}, jaws, {}, options).outcome, Outcome::solved);
+}
+
+TEST(PlanGrippers, RefuseTwoPartsOfOneNameThatStay) {
+  std::vector<AssemblyOperation> order = ring_on_peg();
+  order[0].passive.push_back(order[0].passive[0]);
+  try {
+    plan_grippers(order, kChuck);
+    FAIL();
+  } catch (const InvalidInput& e) {
+    EXPECT_STREQ(e.what(), "operation 'ring': part 'plate' stays twice: names must differ");
+  }
+}
+
 TEST(PlanGrippers, FingersKeepOffSegmentsAndBoxes) {
   std::vector<int> all;
   for (const SegmentFate& f : ring_plan().fates) all.push_back(f.segment);

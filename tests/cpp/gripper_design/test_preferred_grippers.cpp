@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "gripper_design/every_set.hpp"
@@ -132,6 +133,34 @@ TEST(PreferredGrippers, AreAsGoodAsSolvingAgainForEverySegment) {
     sums += best.changes;
   }
   EXPECT_GT(sums, 0);
+}
+
+/// Parts of one to four segments, 5 to 200 mm wide (evenly in the logarithm), a quarter of which ask for long fingers.
+std::vector<SegmentRequirement> random_parts(int count, Rng& rng) {
+  std::vector<SegmentRequirement> out;
+  for (int p = 0; p < count; ++p) {
+    const int segments = 1 + static_cast<int>(rng.index(4));
+    for (int s = 0; s < segments; ++s)
+      out.push_back(segment(std::to_string(p), 2 + static_cast<int>(rng.index(2)),
+                            1e-4 * std::round(50 * std::exp(rng.uniform(0, std::log(40.0)))),
+                            rng.uniform() < 0.25 ? rng.uniform(0.01, 0.06) : 0));
+  }
+  return out;
+}
+
+TEST(PreferredGrippers, EveryBetterSegmentOfTwoHundredPartsIsDecided) {
+  for (const double stroke : {0.008, 0.024, 0.048}) {
+    Rng rng(200);
+    const std::vector<SegmentRequirement> requirements = random_parts(200, rng);
+    std::vector<double> values(requirements.size());
+    for (double& v : values) v = rng.uniform();
+    const MinimalGrippersResult best =
+        preferred_grippers(requirements, values, {{"jaws", 2, stroke}, {"centric", 3, stroke}});
+    EXPECT_EQ(best.outcome, Outcome::solved) << stroke;
+    EXPECT_EQ(best.changes, best.changes_bound) << stroke;
+    EXPECT_TRUE(best.preference_finished) << stroke;
+    expect_complete(best, requirements);
+  }
 }
 
 TEST(PreferredGrippers, SayThatTheyAreNotFinished) {

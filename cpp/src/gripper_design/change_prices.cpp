@@ -1,0 +1,159 @@
+#include "gripper_design/change_prices.hpp"
+
+#include <algorithm>
+
+#include "mmgrasp/core/detail/numbers.hpp"
+
+namespace mmgrasp::detail {
+namespace {
+
+constexpr int kStallLimit = 50;        // Steps without a better bound before they are shortened,
+constexpr double kShorter = 0.8;       // to this share.
+constexpr double kLeastGain = 1e-3;    // A bound that is better by less is no better,
+constexpr double kShortest = 1e-6;     // and steps of a smaller share than this are none.
+constexpr double kNewShare = 0.03;     // Of a direction: the rest is that of the step before.
+constexpr double kFirstWorth = 3;      // In changes, of the cheapest gripper.
+constexpr double kRounding = 1e-9;     // In changes, more than roundings add to a bound.
+
+}  // namespace
+
+ChangePrices::ChangePrices(const std::vector<GripperCandidate>& candidates, int part_count)
+    : candidates_(candidates),
+      uses_of_part_(part_count),
+      reduced_(candidates.size(), 0.0),
+      cheapest_(part_count),
+      way_(part_count) {
+  for (int p = 0; p < part_count; ++p) {
+    for (int g = 0; g < static_cast<int>(candidates.size()); ++g) {
+      if (!candidates[g].parts.test(p)) continue;
+      uses_of_part_[p].push_back(static_cast<int>(use_count()));
+      gripper_of_use_.push_back(g);
+    }
+  }
+}
+
+ChangePrices::Prices ChangePrices::first_prices() const {
+  double least = kInfinity;
+  for (const GripperCandidate& c : candidates_) least = std::min(least, c.cost);
+  return {std::vector<double>(use_count(), 0.0), kFirstWorth / least};
+}
+
+ChangePrices::Prices ChangePrices::compact(const std::vector<double>& of_use, double of_cost) const {
+  Prices out{{}, of_cost};
+  for (std::size_t p = 0; p < uses_of_part_.size(); ++p)
+    for (const int u : uses_of_part_[p]) out.of_use.push_back(of_use[gripper_of_use_[u] * uses_of_part_.size() + p]);
+  return out;
+}
+
+std::vector<double> ChangePrices::spread(const Prices& prices) const {
+  std::vector<double> out(candidates_.size() * uses_of_part_.size(), 0.0);
+  for (std::size_t p = 0; p < uses_of_part_.size(); ++p)
+    for (const int u : uses_of_part_[p]) out[gripper_of_use_[u] * uses_of_part_.size() + p] = prices.of_use[u];
+  return out;
+}
+
+double ChangePrices::raise(const CandidateChoice& among, const Goal& goal, Prices& prices, const Ended& ended) {
+  select(among);
+  Prices now = prices;
+  double best = -kInfinity, share = 1;
+  int since = 0;
+  for (int k = 0; k < goal.steps && share > kShortest; ++k) {
+    const double reached = bound(now, goal.budget);
+    since = reached > best + kLeastGain ? 0 : since + 1;
+    if (reached > best) {
+      best = reached;
+      prices = now;
+    }
+    if (best > goal.enough || ended()) break;
+    if (since > kStallLimit) {
+      since = 0;
+      share *= kShorter;
+      now = prices;
+      continue;
+    }
+    const double squares = slopes(now, goal.budget);
+    if (squares == 0) break;
+    const double length = share * (goal.enough + 1 - reached) / squares;
+    for (std::size_t i = 0; i < uses_.size(); ++i) {
+      double& price = now.of_use[uses_[i].number];
+      price = std::max(0.0, price + length * direction_[i]);
+    }
+    now.of_cost = std::max(0.0, now.of_cost + length * cost_direction_);
+  }
+  return bound(prices, goal.budget);
+}
+
+void ChangePrices::select(const CandidateChoice& among) {
+  open_.clear();
+  for (int g = among.allowed.first(); g >= 0; g = among.allowed.next(g + 1))
+    if (!among.chosen.test(g)) open_.push_back(g);
+  std::vector<int> last(candidates_.size(), -1);
+  uses_.clear();
+  begin_.clear();
+  for (std::size_t p = 0; p < uses_of_part_.size(); ++p) {
+    begin_.push_back(uses_.size());
+    for (const int number : uses_of_part_[p]) {
+      const int g = gripper_of_use_[number];
+      if (!among.allowed.test(g)) continue;
+      const bool goes_on = last[g] >= 0 && uses_[last[g]].part + 1 == static_cast<int>(p);
+      uses_.push_back({number, static_cast<int>(p), g, goes_on ? last[g] : -1, among.chosen.test(g)});
+      last[g] = static_cast<int>(uses_.size()) - 1;
+    }
+  }
+  begin_.push_back(uses_.size());
+  reach_.resize(uses_.size());
+  stays_.resize(uses_.size());
+  direction_.assign(uses_.size(), 0.0);
+  cost_direction_ = 0;
+}
+
+double ChangePrices::bound(const Prices& prices, double budget) {
+  work_ += static_cast<double>(uses_.size());
+  find_way(prices);
+  for (const int g : open_) reduced_[g] = prices.of_cost * candidates_[g].cost;
+  for (const Use& u : uses_)
+    if (!u.is_free) reduced_[u.gripper] -= prices.of_use[u.number];
+  double sum = reach_[way_.back()] - prices.of_cost * budget;
+  for (const int g : open_) sum += std::min(0.0, reduced_[g]);
+  return sum - kRounding;
+}
+
+void ChangePrices::find_way(const Prices& prices) {
+  for (std::size_t p = 0; p + 1 < begin_.size(); ++p) {
+    const double changed = p == 0 ? 0 : reach_[cheapest_[p - 1]] + 1;
+    cheapest_[p] = begin_[p];
+    for (std::size_t i = begin_[p]; i < begin_[p + 1]; ++i) {
+      const Use& u = uses_[i];
+      stays_[i] = u.before >= 0 && reach_[u.before] < changed;
+      reach_[i] = (stays_[i] ? reach_[u.before] : changed) + (u.is_free ? 0 : prices.of_use[u.number]);
+      if (reach_[i] < reach_[cheapest_[p]]) cheapest_[p] = i;
+    }
+  }
+  std::size_t at = cheapest_.back();
+  for (std::size_t p = way_.size(); p-- > 0;) {
+    way_[p] = at;
+    if (p > 0) at = stays_[at] ? static_cast<std::size_t>(uses_[at].before) : cheapest_[p - 1];
+  }
+}
+
+/// Turns the direction of steps towards the slopes at these prices; its square.
+double ChangePrices::slopes(const Prices& prices, double budget) {
+  double spent = 0, squares = 0;
+  for (const int g : open_)
+    if (reduced_[g] < 0) spent += candidates_[g].cost;
+  const auto turn = [&](double& direction, double slope, double price) {
+    direction = (1 - kNewShare) * direction + kNewShare * slope;
+    if (price == 0 && direction < 0) direction = 0;
+    squares += direction * direction;
+  };
+  turn(cost_direction_, spent - budget, prices.of_cost);
+  for (std::size_t i = 0; i < uses_.size(); ++i) {
+    const Use& u = uses_[i];
+    if (u.is_free) continue;
+    const double on_way = way_[u.part] == i ? 1 : 0, paid = reduced_[u.gripper] < 0 ? 1 : 0;
+    turn(direction_[i], on_way - paid, prices.of_use[u.number]);
+  }
+  return squares;
+}
+
+}  // namespace mmgrasp::detail

@@ -1,19 +1,20 @@
 #include "gripper_design/change_prices.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "mmgrasp/core/detail/numbers.hpp"
 
 namespace mmgrasp::detail {
 namespace {
 
-constexpr int kStallLimit = 50;        // Steps without a better bound before they are shortened,
-constexpr double kShorter = 0.8;       // to this share.
-constexpr double kLeastGain = 1e-3;    // A bound that is better by less is no better,
-constexpr double kShortest = 1e-6;     // and steps of a smaller share than this are none.
-constexpr double kNewShare = 0.03;     // Of a direction: the rest is that of the step before.
-constexpr double kFirstWorth = 3;      // In changes, of the cheapest gripper.
-constexpr double kRounding = 1e-9;     // In changes, more than roundings add to a bound.
+constexpr int kStallLimit = 50;      // Steps without a better bound before they are shortened,
+constexpr double kShorter = 0.8;     // to this share.
+constexpr double kLeastGain = 1e-3;  // A bound that is better by less is no better,
+constexpr double kShortest = 1e-6;   // and steps of a smaller share than this are none.
+constexpr double kNewShare = 0.03;   // Of a direction: the rest is that of the step before.
+constexpr double kFirstWorth = 3;    // In changes, of the cheapest gripper.
+constexpr double kRounding = 1e-9;   // In changes, more than roundings add to a bound.
 
 }  // namespace
 
@@ -53,37 +54,40 @@ std::vector<double> ChangePrices::spread(const Prices& prices) const {
 }
 
 double ChangePrices::raise(const CandidateChoice& among, const Goal& goal, Prices& prices, const Ended& ended) {
-  select(among);
-  Prices now = prices;
-  double best = -kInfinity, share = 1;
+  select(among, prices);
+  std::vector<double> best_prices = prices_;
+  double best_of_cost = of_cost_, best = -kInfinity, share = 1;
   int since = 0;
   for (int k = 0; k < goal.steps && share > kShortest; ++k) {
-    const double reached = bound(now, goal.budget);
+    const double reached = bound(goal.budget);
     since = reached > best + kLeastGain ? 0 : since + 1;
     if (reached > best) {
       best = reached;
-      prices = now;
+      best_prices = prices_;
+      best_of_cost = of_cost_;
     }
     if (best > goal.enough || ended()) break;
     if (since > kStallLimit) {
       since = 0;
       share *= kShorter;
-      now = prices;
+      prices_ = best_prices;
+      of_cost_ = best_of_cost;
       continue;
     }
-    const double squares = slopes(now, goal.budget);
+    const double squares = turn_direction(goal.budget);
     if (squares == 0) break;
     const double length = share * (goal.enough + 1 - reached) / squares;
-    for (std::size_t i = 0; i < uses_.size(); ++i) {
-      double& price = now.of_use[uses_[i].number];
-      price = std::max(0.0, price + length * direction_[i]);
-    }
-    now.of_cost = std::max(0.0, now.of_cost + length * cost_direction_);
+    for (std::size_t i = 0; i < uses_.size(); ++i) prices_[i] = std::max(0.0, prices_[i] + length * direction_[i]);
+    of_cost_ = std::max(0.0, of_cost_ + length * cost_direction_);
   }
-  return bound(prices, goal.budget);
+  prices_ = std::move(best_prices);
+  of_cost_ = best_of_cost;
+  for (std::size_t i = 0; i < uses_.size(); ++i) prices.of_use[uses_[i].number] = prices_[i];
+  prices.of_cost = of_cost_;
+  return bound(goal.budget);
 }
 
-void ChangePrices::select(const CandidateChoice& among) {
+void ChangePrices::select(const CandidateChoice& among, const Prices& prices) {
   open_.clear();
   for (int g = among.allowed.first(); g >= 0; g = among.allowed.next(g + 1))
     if (!among.chosen.test(g)) open_.push_back(g);
@@ -105,27 +109,29 @@ void ChangePrices::select(const CandidateChoice& among) {
   stays_.resize(uses_.size());
   direction_.assign(uses_.size(), 0.0);
   cost_direction_ = 0;
+  prices_.clear();
+  for (const Use& u : uses_) prices_.push_back(u.is_free ? 0 : prices.of_use[u.number]);
+  of_cost_ = prices.of_cost;
 }
 
-double ChangePrices::bound(const Prices& prices, double budget) {
+double ChangePrices::bound(double budget) {
   work_ += static_cast<double>(uses_.size());
-  find_way(prices);
-  for (const int g : open_) reduced_[g] = prices.of_cost * candidates_[g].cost;
-  for (const Use& u : uses_)
-    if (!u.is_free) reduced_[u.gripper] -= prices.of_use[u.number];
-  double sum = reach_[way_.back()] - prices.of_cost * budget;
+  find_way();
+  for (const int g : open_) reduced_[g] = of_cost_ * candidates_[g].cost;
+  for (std::size_t i = 0; i < uses_.size(); ++i) reduced_[uses_[i].gripper] -= prices_[i];
+  double sum = reach_[way_.back()] - of_cost_ * budget;
   for (const int g : open_) sum += std::min(0.0, reduced_[g]);
   return sum - kRounding;
 }
 
-void ChangePrices::find_way(const Prices& prices) {
+void ChangePrices::find_way() {
   for (std::size_t p = 0; p + 1 < begin_.size(); ++p) {
     const double changed = p == 0 ? 0 : reach_[cheapest_[p - 1]] + 1;
     cheapest_[p] = begin_[p];
     for (std::size_t i = begin_[p]; i < begin_[p + 1]; ++i) {
-      const Use& u = uses_[i];
-      stays_[i] = u.before >= 0 && reach_[u.before] < changed;
-      reach_[i] = (stays_[i] ? reach_[u.before] : changed) + (u.is_free ? 0 : prices.of_use[u.number]);
+      const int before = uses_[i].before;
+      stays_[i] = before >= 0 && reach_[before] < changed;
+      reach_[i] = (stays_[i] ? reach_[before] : changed) + prices_[i];
       if (reach_[i] < reach_[cheapest_[p]]) cheapest_[p] = i;
     }
   }
@@ -136,8 +142,8 @@ void ChangePrices::find_way(const Prices& prices) {
   }
 }
 
-/// Turns the direction of steps towards the slopes at these prices; its square.
-double ChangePrices::slopes(const Prices& prices, double budget) {
+/// Turns the direction of steps towards the slopes at the prices at hand; its square.
+double ChangePrices::turn_direction(double budget) {
   double spent = 0, squares = 0;
   for (const int g : open_)
     if (reduced_[g] < 0) spent += candidates_[g].cost;
@@ -146,12 +152,12 @@ double ChangePrices::slopes(const Prices& prices, double budget) {
     if (price == 0 && direction < 0) direction = 0;
     squares += direction * direction;
   };
-  turn(cost_direction_, spent - budget, prices.of_cost);
+  turn(cost_direction_, spent - budget, of_cost_);
   for (std::size_t i = 0; i < uses_.size(); ++i) {
     const Use& u = uses_[i];
     if (u.is_free) continue;
     const double on_way = way_[u.part] == i ? 1 : 0, paid = reduced_[u.gripper] < 0 ? 1 : 0;
-    turn(direction_[i], on_way - paid, prices.of_use[u.number]);
+    turn(direction_[i], on_way - paid, prices_[i]);
   }
   return squares;
 }

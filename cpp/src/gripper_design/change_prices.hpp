@@ -51,30 +51,32 @@ class ChangePrices {
 
  private:
   struct Use {
-    int number = 0;   // Over all candidates.
-    int part = 0;     // That is taken.
-    int gripper = 0;  // Candidate.
-    int before = -1;  // The same gripper's place in uses_ for the part before; -1: none.
+    int number = 0;        // Over all candidates.
+    int part = 0;          // That is taken.
+    int gripper = 0;       // Candidate.
+    int before = -1;       // The same gripper's place in uses_ for the part before; -1: none.
     bool is_free = false;  // The gripper is chosen.
   };
 
-  void select(const CandidateChoice& among);
-  double bound(const Prices& prices, double budget);
-  void find_way(const Prices& prices);
-  double slopes(const Prices& prices, double budget);
+  void select(const CandidateChoice& among, const Prices& prices);
+  double bound(double budget);
+  void find_way();
+  double turn_direction(double budget);
 
   const std::vector<GripperCandidate>& candidates_;
   std::vector<int> gripper_of_use_;
   std::vector<std::vector<int>> uses_of_part_;
-  std::vector<Use> uses_;                   // Of allowed candidates, part by part;
-  std::vector<std::size_t> begin_;          // where those of each part begin.
-  std::vector<int> open_;                   // Allowed, and not chosen.
-  std::vector<double> reduced_;             // By candidate.
-  std::vector<double> reach_;               // By place in uses_: what the cheapest way there costs,
-  std::vector<char> stays_;                 // and whether it comes from the same gripper.
-  std::vector<std::size_t> cheapest_;       // By part, the use by which ways end most cheaply.
-  std::vector<std::size_t> way_;            // By part, the use on the cheapest way.
-  std::vector<double> direction_;           // Of steps, by place in uses_.
+  std::vector<Use> uses_;              // Of allowed candidates, part by part;
+  std::vector<std::size_t> begin_;     // where those of each part begin.
+  std::vector<double> prices_;         // By place in uses_.
+  double of_cost_ = 0;                 // As Prices'.
+  std::vector<int> open_;              // Allowed, and not chosen.
+  std::vector<double> reduced_;        // By candidate.
+  std::vector<double> reach_;          // By place in uses_: what the cheapest way there costs,
+  std::vector<char> stays_;            // and whether it comes from the same gripper.
+  std::vector<std::size_t> cheapest_;  // By part, the use by which ways end most cheaply.
+  std::vector<std::size_t> way_;       // By part, the use on the cheapest way.
+  std::vector<double> direction_;      // Of steps, by place in uses_.
   double cost_direction_ = 0;
   double work_ = 0;
 };

@@ -7,7 +7,7 @@
 namespace mmgrasp::detail {
 namespace {
 
-constexpr int kStallLimit = 15;       // Steps without a better bound before they are halved.
+constexpr int kStallLimit = 15;      // Steps without a better bound before they are halved.
 constexpr double kRounding = 1e-13;  // Share of all terms that roundings may have added to a bound.
 
 }  // namespace

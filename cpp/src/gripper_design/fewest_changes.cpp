@@ -20,10 +20,10 @@ struct PriceSteps {
   int of_parts = 30, of_uses = 30;
 };
 constexpr PriceSteps kFirstSteps{600, 6000};  // Before anything is chosen.
-constexpr double kFirstWork = 2e8;            // Uses that these may look at.
-constexpr double kNodeWork = 2e4;    // Uses that count as a node.
-constexpr int kManyLess = 10;        // Where a tenth is left out, bounds are raised again,
-constexpr double kMoreChanges = 0.1;  // and where the bound was raised by this.
+constexpr double kFirstWork = 6e7;            // Uses that these may look at.
+constexpr double kNodeWork = 5e3;             // Uses that count as a node.
+constexpr int kManyLess = 10;                 // Where a tenth is left out, bounds are raised again,
+constexpr double kMoreChanges = 0.1;          // and where the bound was raised by this.
 
 /// Branch and bound over sets of grippers. In a set a gripper is kept for as long as one takes the next part, which
 /// needs fewest changes.
@@ -190,7 +190,12 @@ class Search {
 
   /// Searches all sets; no set that costs as little as the best one needs fewer changes than the answer.
   int search(SearchPrices& prices) {
-    Node all{Bits(count()), Bits(count()), Bits(parts()), 0, 0, std::vector<double>(parts(), 0.0),
+    Node all{Bits(count()),
+             Bits(count()),
+             Bits(parts()),
+             0,
+             0,
+             std::vector<double>(parts(), 0.0),
              change_prices_.first_prices()};
     for (int g = 0; g < count(); ++g) all.allowed.set(g);
     for (int p = 0; p < parts(); ++p) all.uncovered.set(p);
@@ -233,8 +238,8 @@ class Search {
       node.changes = std::max(node.changes, changes_with(node.allowed));
       if (no_better(node.cost, node.changes)) return false;
       if (node.uncovered.first() < 0) return true;
-      const double least_cost = node.cost + cover_prices_.raise(open(node), node.uncovered, steps.of_parts, room(node),
-                                                                node.part_prices);
+      const double least_cost =
+          node.cost + cover_prices_.raise(open(node), node.uncovered, steps.of_parts, room(node), node.part_prices);
       if (no_better(least_cost, node.changes)) return false;
       if (leave_out(node, [&](int g) {
             return no_better(least_cost + std::max(0.0, cover_prices_.reduced_cost(g)), node.changes);

@@ -20,7 +20,7 @@ constexpr double kSameCost = 1e-12;  // Share by which sums of the same costs in
 constexpr double kSameValue = 1e-9;
 constexpr int kSearches = 5;               // All tries together may take so many times the nodes of one search,
 constexpr std::size_t kMostSought = 4000;  // Beyond it only the set at hand is asked.
-constexpr int kOneTry = 4;                 // and one try this share of it.
+constexpr int kOneTry = 2;                 // and one try this share of it.
 
 /// Which requirements each part may be taken by, over candidates that are made once: parts are held to their best one
 /// after the other, and a set that is as good as the least one is kept at hand.

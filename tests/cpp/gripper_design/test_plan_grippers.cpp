@@ -125,7 +125,8 @@ TEST(PlanGrippers, SlimmerFingersAreAdvisedWhereAGapIsTooNarrow) {
   for (const double side : {1.0, -1.0}) {
     const std::string which = side > 0 ? "one" : "other";
     o.passive.push_back({which + " along", block({0.03, 0.005, 0.015}), at(0, side * (0.006 + 0.0055 + 0.005), 0.015)});
-    o.passive.push_back({which + " across", block({0.005, 0.01, 0.015}), at(side * (0.015 + 0.0055 + 0.005), 0, 0.015)});
+    o.passive.push_back(
+        {which + " across", block({0.005, 0.01, 0.015}), at(side * (0.015 + 0.0055 + 0.005), 0, 0.015)});
   }
   o.motion = {at(0, 0, 0.05), at(0, 0, 0)};
   const std::vector<GripperActuator> jaws{{"jaws", 2, 0.03}};

@@ -35,7 +35,9 @@ struct MMGRASP_EXPORT MinimalGrippersOptions {
   /// Values of the largest opening and of the finger length on P1's grid (n and m of 5.3.4); 0 and 0: every gripper
   /// that matters, exactly.
   int grid_openings = 0, grid_lengths = 0;
-  int max_nodes = 20000;   ///< Most nodes of the search for fewest changes, and of that for better segments, > 0.
+  /// Most nodes of the search for fewest changes, and of that for better segments, > 0. Steps by which bounds are
+  /// raised count as nodes, too: 20000 are about a second of processor time.
+  int max_nodes = 20000;
   double time_limit = 60;  ///< Wall-clock cap [s], > 0.
   void check() const;
 };
@@ -79,7 +81,7 @@ MMGRASP_EXPORT MinimalGrippersResult minimal_grippers(const std::vector<SegmentR
 /// gone through in the order of assembly, and of each the requirements in the order of their values, highest first;
 /// the first with which the set stays as good is kept. `values`: one per requirement, not NaN; equal ones stay as
 /// minimal_grippers() chose. Asked are the set at hand, then each exchange of one gripper, then a branch and bound of
-/// at most a quarter of `max_nodes`, all of which together get five times `max_nodes`; of more than 4,000 requirements
+/// at most half of `max_nodes`, all of which together get five times `max_nodes`; of more than 4,000 requirements
 /// the set at hand alone. Its `requirement_of_part` counts in the requirements given. Throws as minimal_grippers()
 /// does, and for another number of values.
 MMGRASP_EXPORT MinimalGrippersResult preferred_grippers(const std::vector<SegmentRequirement>& requirements,

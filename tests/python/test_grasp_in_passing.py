@@ -32,9 +32,7 @@ def moved(x: float = 0, y: float = 0, z: float = 0, turn: float = 0) -> NDArray[
 
 def assembly_of_key(file: Path, posts: list[tuple[float, float]]) -> Path:
     """A key of 18 x 12 x 40 mm turns by 90 degrees at a height of 60 mm, and comes down on a plate."""
-    stand = [
-        {"name": f"post {i}", "box": [3, 3, 70], "pose": {"xyz": [x, y, 90]}} for i, (x, y) in enumerate(posts)
-    ]
+    stand = [{"name": f"post {i}", "box": [3, 3, 70], "pose": {"xyz": [x, y, 90]}} for i, (x, y) in enumerate(posts)]
     content: dict[str, Any] = {
         "format": "mmgrasp-assembly",
         "version": 1,

@@ -14,7 +14,7 @@ constexpr double kLeastGain = 1e-3;  // A bound that is better by less is no bet
 constexpr double kShortest = 1e-6;   // and steps of a smaller share than this are none.
 constexpr double kNewShare = 0.03;   // Of a direction: the rest is that of the step before.
 constexpr double kFirstWorth = 3;    // In changes, of the cheapest gripper.
-constexpr double kRounding = 1e-9;   // In changes, more than roundings add to a bound.
+constexpr double kRounding = 1e-12;  // Share of all terms that roundings may have added to a bound.
 
 }  // namespace
 
@@ -119,9 +119,12 @@ double ChangePrices::bound(double budget) {
   find_way();
   for (const int g : open_) reduced_[g] = of_cost_ * candidates_[g].cost;
   for (std::size_t i = 0; i < uses_.size(); ++i) reduced_[uses_[i].gripper] -= prices_[i];
-  double sum = reach_[way_.back()] - of_cost_ * budget;
-  for (const int g : open_) sum += std::min(0.0, reduced_[g]);
-  return sum - kRounding;
+  double sum = reach_[way_.back()] - of_cost_ * budget, terms = reach_[way_.back()] + of_cost_ * budget;
+  for (const int g : open_) {
+    sum += std::min(0.0, reduced_[g]);
+    terms += 2 * of_cost_ * candidates_[g].cost - reduced_[g];
+  }
+  return sum - kRounding * terms;
 }
 
 void ChangePrices::find_way() {

@@ -12,8 +12,8 @@ constexpr int kStallLimit = 50;      // Steps without a better bound before they
 constexpr double kShorter = 0.8;     // to this share.
 constexpr double kLeastGain = 1e-3;  // A bound that is better by less is no better,
 constexpr double kShortest = 1e-6;   // and steps of a smaller share than this are none.
-constexpr double kNewShare = 0.03;   // Of a direction: the rest is that of the step before.
-constexpr double kFirstWorth = 3;    // In changes, of the cheapest gripper.
+constexpr double kNewShare = 0.03;   // Share of a direction that is new: the rest is that of the step before.
+constexpr double kFirstWorth = 3;    // What the cheapest gripper is worth at first, in changes.
 constexpr double kRounding = 1e-12;  // Share of all terms that roundings may have added to a bound.
 
 }  // namespace

@@ -51,8 +51,8 @@ class ChangePrices {
 
  private:
   struct Use {
-    int number = 0;        // Over all candidates.
-    int part = 0;          // That is taken.
+    int number = 0;        // Number over all candidates.
+    int part = 0;          // Part that is taken.
     int gripper = 0;       // Candidate.
     int before = -1;       // The same gripper's place in uses_ for the part before; -1: none.
     bool is_free = false;  // The gripper is chosen.
@@ -66,17 +66,17 @@ class ChangePrices {
   const std::vector<GripperCandidate>& candidates_;
   std::vector<int> gripper_of_use_;
   std::vector<std::vector<int>> uses_of_part_;
-  std::vector<Use> uses_;              // Of allowed candidates, part by part;
+  std::vector<Use> uses_;              // Those of allowed candidates, part by part;
   std::vector<std::size_t> begin_;     // where those of each part begin.
-  std::vector<double> prices_;         // By place in uses_.
-  double of_cost_ = 0;                 // As Prices'.
+  std::vector<double> prices_;         // One per place in uses_.
+  double of_cost_ = 0;                 // That of Prices.
   std::vector<int> open_;              // Allowed, and not chosen.
-  std::vector<double> reduced_;        // By candidate.
-  std::vector<double> reach_;          // By place in uses_: what the cheapest way there costs,
+  std::vector<double> reduced_;        // One per candidate.
+  std::vector<double> reach_;          // What the cheapest way to a place in uses_ costs,
   std::vector<char> stays_;            // and whether it comes from the same gripper.
-  std::vector<std::size_t> cheapest_;  // By part, the use by which ways end most cheaply.
-  std::vector<std::size_t> way_;       // By part, the use on the cheapest way.
-  std::vector<double> direction_;      // Of steps, by place in uses_.
+  std::vector<std::size_t> cheapest_;  // The use by which ways to each part end most cheaply.
+  std::vector<std::size_t> way_;       // The use of each part on the cheapest way.
+  std::vector<double> direction_;      // Direction of steps, one per place in uses_.
   double cost_direction_ = 0;
   double work_ = 0;
 };

@@ -75,7 +75,7 @@ class Search {
   /// Some of the sets that are searched, and what is known about those of them that are better than the best.
   struct Node {
     Bits chosen, allowed, uncovered;  // `allowed`: what may be chosen, and `chosen`.
-    double cost = 0;                  // Of `chosen`.
+    double cost = 0;                  // That of `chosen`.
     int changes = 0;                  // None needs fewer.
     std::vector<double> part_prices;
     ChangePrices::Prices use_prices;

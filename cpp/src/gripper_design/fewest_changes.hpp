@@ -31,7 +31,7 @@ FewestChanges fewest_changes(const std::vector<GripperCandidate>& candidates, in
 /// the same candidates when these take a little less or more.
 struct SearchPrices {
   std::vector<double> of_part;
-  std::vector<double> of_use;  ///< By candidate and part: candidate times the number of parts, and the part.
+  std::vector<double> of_use;  ///< One per candidate and part: candidate times the number of parts, and the part.
   double of_cost = 0;
   bool empty() const { return of_part.empty(); }
 };

@@ -240,7 +240,7 @@ class Preference {
   std::vector<int> set_;                      // Candidates at hand,
   GripperChoice choice_;                      // and which of them takes which part.
   GripperChoice limit_;                       // Cost and changes of the least set.
-  SearchPrices prices_;                       // Of the last search.
+  SearchPrices prices_;                       // Those of the last search.
   int run_end_ = 0;
   long nodes_left_ = 0;
   bool finished_ = true;

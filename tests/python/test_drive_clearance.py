@@ -43,8 +43,7 @@ def kept(scenario: mg.scenario.Scenario, poses: np.ndarray) -> float:
     """Least distance to all but the ground where the base is farther than 1 m from both ends [m], every centimetre."""
     world = scenario.world_with_parts
     world.remove("floor")
-    arm = scenario.setup.arm
-    checker = mg.CollisionChecker(arm, world)
+    robot, arm = scenario.setup.robot, scenario.setup.arm
     least = np.inf
     for a, b in zip(poses[:-1], poses[1:], strict=True):
         for share in np.linspace(0.0, 1.0, 1 + int(max(np.linalg.norm((b - a)[:2]) / 0.01, abs(b - a)[2] / 0.02))):
@@ -54,8 +53,8 @@ def kept(scenario: mg.scenario.Scenario, poses: np.ndarray) -> float:
             root = np.eye(4)
             root[:2, :2] = [[np.cos(theta), -np.sin(theta)], [np.sin(theta), np.cos(theta)]]
             root[:2, 3] = x, y
-            checker.set_root(root)
-            least = min([least, *(d.value for d in checker.distances(scenario.setup.home, 1.0) if d.with_scene)])
+            checker = mg.CollisionChecker(robot, world, arm.at(root), check_self=False)
+            least = min([least, *(near.value for near in checker.distances(scenario.setup.home, 1.0))])
     return float(least)
 
 

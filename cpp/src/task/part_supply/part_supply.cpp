@@ -268,14 +268,17 @@ class PartSupply {
     return obstructed(explain_route(from, last_stop >= 0, to, tray, searched, smaller_clearance(from, to)));
   }
 
-  /// The first of a half of the drives' clearance, a quarter, ... in whole millimetres, with which a drive is found; 0:
-  /// without any, negative: not even so, or none was asked for.
+  /// The first of a half of the drives' clearance, a quarter, ... in whole millimetres, with which this drive and an
+  /// order of the stops are found; 0: without any, negative: not even so, or none was asked for.
   double smaller_clearance(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const {
     PartSupplyProblem smaller = problem_;
     while (smaller.drive_clearance > 0 && !monitor_.stopped()) {
       const double half = std::floor(500 * smaller.drive_clearance) / 1000;
       smaller.drive_clearance = half < kLeastClearance ? 0 : half;
-      if (BaseRoutes(smaller, monitor_).between(from, to).outcome == Outcome::solved) return smaller.drive_clearance;
+      BaseRoutes routes(smaller, monitor_);
+      const bool is_there = routes.between(from, to).outcome == Outcome::solved;
+      if (is_there && order_stops(smaller, plan_.stops, routes).stops.size() == plan_.stops.size())
+        return smaller.drive_clearance;
     }
     return -1;
   }

@@ -172,8 +172,8 @@ void bind_problem(py::module_& m) {
                                 "    plan = mg.base.plan_part_supply(problem, database)")
       .def(py::init([](const Robot& robot, const JointGroup& arm, const Hand& gripper, const World& world,
                        std::vector<Tray> trays, const ArrayLike& home, const ArrayLike& start, const ArrayLike& goal,
-                       const PlaceRegion& place_region, const OptionalArray& arrival_covariance,
-                       double drive_clearance, const py::kwargs& options) {
+                       const PlaceRegion& place_region, const OptionalArray& arrival_covariance, double drive_clearance,
+                       const py::kwargs& options) {
              PartSupplyProblem problem{robot,
                                        arm,
                                        gripper,

@@ -46,7 +46,8 @@ def kept(scenario: mg.scenario.Scenario, poses: np.ndarray) -> float:
     robot, arm = scenario.setup.robot, scenario.setup.arm
     least = np.inf
     for a, b in zip(poses[:-1], poses[1:], strict=True):
-        for share in np.linspace(0.0, 1.0, 1 + int(max(np.linalg.norm((b - a)[:2]) / 0.01, abs(b - a)[2] / 0.02))):
+        steps = 1 + round(max(np.linalg.norm((b - a)[:2]) / 0.01, abs(b - a)[2] / 0.02))
+        for share in np.linspace(0.0, 1.0, steps):
             x, y, theta = a + share * (b - a)
             if min(np.linalg.norm([x, y] - end[:2]) for end in (poses[0], poses[-1])) <= NEAR_ENDS:
                 continue

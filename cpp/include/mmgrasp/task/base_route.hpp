@@ -12,7 +12,8 @@
 
 namespace mmgrasp {
 
-/// Stops lie close to what is picked there: within this distance of either end of a drive no clearance is asked for [m].
+/// Stops lie close to what is picked there: within this distance of either end of a drive no clearance is asked for
+/// [m].
 inline constexpr double kNearEnds = 1.0;
 
 /// How the base can move, where it may, and how finely plan_base_route() searches the floor.

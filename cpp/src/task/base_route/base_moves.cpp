@@ -91,7 +91,8 @@ void BaseClearance::keep(double clearance, const std::vector<Eigen::Vector3d>& e
   if (!(clearance > 0)) return;
   for (const Eigen::Vector3d& end : ends) ends_.emplace_back(end.head<2>());
   const double between = 0.5 * check_step_ + 0.5 * kTurnStep * radius_;  // no point of the robot gets farther
-  padded_.emplace(checker_.group(), without_ground(checker_.world()), padded_by(checker_.options(), clearance + between));
+  padded_.emplace(checker_.group(), without_ground(checker_.world()),
+                  padded_by(checker_.options(), clearance + between));
   padded_clearance_ = std::make_unique<BaseClearance>(*padded_, home_, check_step_);
 }
 

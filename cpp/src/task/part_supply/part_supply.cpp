@@ -27,7 +27,7 @@ namespace {
 
 constexpr int kRobustnessRounds = 5;
 constexpr double kRequiredRate = 0.999;   // Share of the base poses drawn at each stop that must work in the end.
-constexpr double kLeastClearance = 0.01;     // Smaller ones are not advised [m].
+constexpr double kLeastClearance = 0.01;  // Smaller ones are not advised [m].
 constexpr std::size_t kAlternatives = 4;  // Base poses tried where no motion was found at a stop.
 constexpr int kMotionRounds = 4;          // Sets of stops tried when no motion was found at some stop.
 

@@ -241,8 +241,8 @@ class RouteCheck {
           faults_.push_back({"route-collision", at, "'" + touch.a + "' touches '" + touch.b + "'"});
           return;
         }
-        const bool passes = (pose - poses.front()).head<2>().norm() > kNearEnds &&
-                            (pose - poses.back()).head<2>().norm() > kNearEnds;
+        const bool passes =
+            (pose - poses.front()).head<2>().norm() > kNearEnds && (pose - poses.back()).head<2>().norm() > kNearEnds;
         if (passes && !keeps_clearance(at)) return;
       }
     }

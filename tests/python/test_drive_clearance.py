@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import itertools
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -45,7 +46,7 @@ def kept(scenario: mg.scenario.Scenario, poses: np.ndarray) -> float:
     world.remove("floor")
     robot, arm = scenario.setup.robot, scenario.setup.arm
     least = np.inf
-    for a, b in zip(poses[:-1], poses[1:], strict=True):
+    for a, b in itertools.pairwise(poses):
         steps = 1 + round(max(np.linalg.norm((b - a)[:2]) / 0.01, abs(b - a)[2] / 0.02))
         for share in np.linspace(0.0, 1.0, steps):
             x, y, theta = a + share * (b - a)

@@ -176,10 +176,11 @@ void bind_routes(py::module_& m) {
   m.def(
       "plan_base_route",
       [](const JointGroup& arm, const World& world, const ArrayLike& home, const ArrayLike& from, const ArrayLike& to,
-         double resolution) {
+         double resolution, double clearance) {
         BaseRouteOptions options;
         options.base = arm.robot().base();
         options.resolution = resolution;
+        options.clearance = clearance;
         CollisionChecker checker(with_sampled_pairs(arm), world);
         const Eigen::VectorXd q = vector_argument(home, "home", arm.size());
         const Eigen::Vector3d a = vector3_argument(from, "start"), b = vector3_argument(to, "goal");
@@ -188,8 +189,9 @@ void bind_routes(py::module_& m) {
         });
       },
       py::arg("arm"), py::arg("world"), py::kw_only(), py::arg("home"), py::arg("start"), py::arg("goal"),
-      py::arg("resolution") = BaseRouteOptions{}.resolution,
-      "A driveable, collision-free way of the whole robot with its arm at `home`; poses are x, y, theta.");
+      py::arg("resolution") = BaseRouteOptions{}.resolution, py::arg("clearance") = BaseRouteOptions{}.clearance,
+      "A driveable, collision-free way of the whole robot with its arm at `home`; poses are x, y, theta. `clearance` "
+      "[m]\nis kept to all but horizontal planes wherever the base is farther than 1 m from both ends.");
   m.def(
       "route_lengths",
       [](const JointGroup& arm, const World& world, const ArrayLike& home, const ArrayLike& positions,

@@ -172,7 +172,7 @@ void bind_problem(py::module_& m) {
                                 "    plan = mg.base.plan_part_supply(problem, database)")
       .def(py::init([](const Robot& robot, const JointGroup& arm, const Hand& gripper, const World& world,
                        std::vector<Tray> trays, const ArrayLike& home, const ArrayLike& start, const ArrayLike& goal,
-                       const PlaceRegion& place_region, const OptionalArray& arrival_covariance,
+                       const PlaceRegion& place_region, const OptionalArray& arrival_covariance, double drive_clearance,
                        const py::kwargs& options) {
              PartSupplyProblem problem{robot,
                                        arm,
@@ -186,16 +186,18 @@ void bind_problem(py::module_& m) {
                                        supply_options().read(options, "PartSupplyProblem")};
              if (!arrival_covariance.is_none())
                problem.arrival_covariance = covariance_argument(py::reinterpret_borrow<ArrayLike>(arrival_covariance));
+             problem.drive_clearance = drive_clearance;
              problem.check();
              return problem;
            }),
            py::arg("robot"), py::arg("arm"), py::arg("gripper"), py::arg("world"), py::arg("trays"), py::arg("home"),
            py::arg("start"), py::arg("goal"), py::arg("place_region"), py::kw_only(),
-           py::arg("arrival_covariance") = py::none(),
+           py::arg("arrival_covariance") = py::none(), py::arg("drive_clearance") = 0.0,
            ("`world` is without the parts; `home` (n,) is the arm's configuration while driving; `start` and `goal` "
             "(3,) are base\nposes x, y, theta [m, m, rad]. `arrival_covariance` (3, 3) of x, y [m^2] and theta [rad^2] "
             "in the world's axes says how far\nfrom a stop the base comes to stand; stops then are where most arrivals "
-            "serve all their parts. Raises InvalidInput naming\nthe field that breaks its rule." +
+            "serve all their parts. Drives keep\n`drive_clearance` [m] to all but the ground, but within 1 m of their "
+            "ends. Raises InvalidInput naming the field that breaks its rule." +
             option_help(supply_fields()))
                .c_str())
       .def_readonly("robot", &PartSupplyProblem::robot, "The robot.")
@@ -209,6 +211,8 @@ void bind_problem(py::module_& m) {
       .def_readonly("place_region", &PartSupplyProblem::place_region, "Where picked parts go.")
       .def_readonly("arrival_covariance", &PartSupplyProblem::arrival_covariance,
                     "Covariance of x, y [m^2] and theta [rad^2] about a stop (3, 3); zeros: not asked for.")
+      .def_readonly("drive_clearance", &PartSupplyProblem::drive_clearance,
+                    "Kept by drives farther than 1 m from both their ends [m]; 0: not asked for.")
       .def_property_readonly(
           "options",
           [](const PartSupplyProblem& p) -> NamedOptions {

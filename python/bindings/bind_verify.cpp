@@ -210,6 +210,8 @@ void bind_plan_to_check(py::module_& m) {
       .def_readwrite("goal", &PlanToCheck::goal, "Base pose at the end (3,): x, y, theta [m, m, rad].")
       .def_readwrite("positioning_uncertainty", &PlanToCheck::positioning_uncertainty,
                      "Radius of the disc in which the base may come to stand [m].")
+      .def_readwrite("drive_clearance", &PlanToCheck::drive_clearance,
+                     "Kept by drives farther than 1 m from both their ends [m]; 0: not asked for.")
       .def_readwrite("arrival_covariance", &PlanToCheck::arrival_covariance,
                      "Covariance of x, y [m^2] and theta [rad^2] about a stop (3, 3); zeros: arrivals are not judged.")
       .def_property(

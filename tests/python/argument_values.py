@@ -152,6 +152,7 @@ VALUES: dict[str, Any] = {
     "PlaceRegion.size": np.array([0.1, 0.2]),
     "PartSupplyProblem.start": X_Y_THETA,
     "PartSupplyProblem.goal": X_Y_THETA,
+    "drive_clearance": 0.1,
     "arrival_covariance": np.diag([0.01, 0.01, 0.001]),
     "_check_arrival_covariance.covariance": np.diag([0.01, 0.01, 0.001]),
     "plan_stops_exact.start": np.array([0.5, 0.25]),

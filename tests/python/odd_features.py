@@ -159,6 +159,10 @@ def _lengths(scenario: dict[str, Any], draw: Random, _: Path) -> None:
     )
 
 
+def _driving(scenario: dict[str, Any], draw: Random, _: Path) -> None:
+    scenario["drive_clearance"] = draw.choice([0.02, 0.1, 0.25])
+
+
 def _searches(scenario: dict[str, Any], draw: Random, _: Path) -> None:
     scenario["options"].update(
         route_resolution=draw.choice([0.05, 0.1, 0.25]),
@@ -306,6 +310,7 @@ FEATURES: list[tuple[float, Feature]] = [
     (0.3, _padding),
     (0.4, _lengths),
     (0.4, _searches),
+    (0.25, _driving),
     (0.3, _base),
     (0.3, _frames),
     (0.15, _second_hand),

@@ -84,6 +84,7 @@ def full_scenario(small: dict[str, Any]) -> dict[str, Any]:
     scenario["place_region"]["drop_height"] = 0.04
     scenario["floor"] = -0.01
     scenario["arrival_covariance"] = [[4e-4, 1e-5, 0.0], [1e-5, 4e-4, 0.0], [0.0, 0.0, 3e-4]]
+    scenario["drive_clearance"] = 0.03
     scenario["allowed_collisions"] = [["lamp", "pillar"]]
     scenario["padding"] = {"links": 0.001, "objects": 0.002, "by_name": {"pillar": 0.003}}
     assert OPTIONS.keys() | {"positioning_uncertainty"} == _core._supply_option_table().keys()

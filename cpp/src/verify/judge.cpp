@@ -248,6 +248,35 @@ Touch Judge::touch(const Eigen::VectorXd& arm, double opening) {
   return attached_ >= 0 ? attached_touch() : Touch{};
 }
 
+Touch Judge::comes_near(const Eigen::VectorXd& arm, double opening, double margin) {
+  mmgrasp::detail::throw_if_interrupted();
+  place(arm, opening);
+  for (std::size_t index = 0; index < stage_->bodies.size(); ++index) {
+    const PlacedBody& body = stage_->bodies[index];
+    if (!present_[index] || body.name == kFloor) continue;
+    for (const int link : solid_links_) {
+      const std::string& name = stage_->robot->links[link].name;
+      if (!stage_->may_touch(name, body.name) && link_comes_near(link, body, margin))
+        return {TouchKind::scene, name, body.name};
+    }
+  }
+  return {};
+}
+
+bool Judge::link_comes_near(int link, const PlacedBody& body, double margin) const {
+  const auto far = [margin](const Bounds& a, const Bounds& b) { return a.exteriorDistance(b) >= margin; };
+  if (far(link_bounds_[link], body.total)) return false;
+  for (std::size_t i = 0; i < solid_poses_[link].size(); ++i) {
+    for (std::size_t k = 0; k < body.solids.size(); ++k) {
+      if (far(solid_bounds_[link][i], body.bounds[k])) continue;
+      if (closer_than(margin, stage_->link_solids[link][i], solid_poses_[link][i], body.solids[k],
+                      body.T_world_shape[k]))
+        return true;
+    }
+  }
+  return false;
+}
+
 int Judge::fingers_touching_attached(const Eigen::VectorXd& arm, double opening) {
   mmgrasp::detail::throw_if_interrupted();
   place(arm, opening);

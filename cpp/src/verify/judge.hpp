@@ -76,6 +76,8 @@ class Judge {
   void drop();
 
   Touch touch(const Eigen::VectorXd& arm, double opening);
+  /// What the robot's links touch or come closer to than `margin` [m]: bodies of the scene, the ground left out.
+  Touch comes_near(const Eigen::VectorXd& arm, double opening, double margin);
   /// How many finger links touch the attached body.
   int fingers_touching_attached(const Eigen::VectorXd& arm, double opening);
   Pose tip(const Eigen::VectorXd& arm) { return T_world_root_ * kinematics_.tip(arm); }
@@ -87,6 +89,7 @@ class Judge {
   Touch self_touch() const;
   Touch scene_touch() const;
   Touch attached_touch() const;
+  bool link_comes_near(int link, const PlacedBody& body, double margin) const;
   bool link_touches(int link, const Solid& solid, const Pose& T, const Bounds& bounds) const;
 
   std::shared_ptr<const Stage> stage_;

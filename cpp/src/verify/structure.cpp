@@ -174,6 +174,8 @@ void Structure::scalars() {
   need(covariance.allFinite() && (covariance - covariance.transpose()).cwiseAbs().maxCoeff() <= 1e-9 * size &&
            (size == 0 || Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvalues()[0] >= -1e-9 * size),
        "arrival_covariance", "must be finite, symmetric and without a negative eigenvalue");
+  need(finite(plan.drive_clearance) && plan.drive_clearance >= 0, "drive_clearance",
+       text(plan.drive_clearance) + ": must be finite and not negative");
   need(is_pose(plan.T_base_bin), "place_region", "the bin's pose is not a finite rigid transform");
   need(finite(Eigen::VectorXd(plan.bin_size)) && plan.bin_size.minCoeff() > 0, "place_region",
        "the bin's size must be positive");

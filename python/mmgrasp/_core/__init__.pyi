@@ -3097,12 +3097,12 @@ class PartSupplyProblem:
         database = mg.ReachDatabase.build(problem.arm)
         plan = mg.base.plan_part_supply(problem, database)
     """
-    def __init__(self, robot: Robot, arm: JointGroup, gripper: Hand, world: World, trays: collections.abc.Sequence[Tray], home: numpy.typing.ArrayLike, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike, place_region: PlaceRegion, *, arrival_covariance: numpy.typing.ArrayLike | None = None, grid_resolution: float = 0.05, grid_max_distance: float = 0.0, ik_seeds: int = 8, positioning_uncertainty: float = 0.1, approach_distance: float = 0.08, lift_height: float = 0.12, motion_time_limit: float = 5.0, route_resolution: float = 0.1, robustness_samples: int = 2000, seed: int = 1, threads: int = 0) -> None:
+    def __init__(self, robot: Robot, arm: JointGroup, gripper: Hand, world: World, trays: collections.abc.Sequence[Tray], home: numpy.typing.ArrayLike, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike, place_region: PlaceRegion, *, arrival_covariance: numpy.typing.ArrayLike | None = None, drive_clearance: float = 0.0, grid_resolution: float = 0.05, grid_max_distance: float = 0.0, ik_seeds: int = 8, positioning_uncertainty: float = 0.1, approach_distance: float = 0.08, lift_height: float = 0.12, motion_time_limit: float = 5.0, route_resolution: float = 0.1, robustness_samples: int = 2000, seed: int = 1, threads: int = 0) -> None:
         """
         `world` is without the parts; `home` (n,) is the arm's configuration while driving; `start` and `goal` (3,) are base
         poses x, y, theta [m, m, rad]. `arrival_covariance` (3, 3) of x, y [m^2] and theta [rad^2] in the world's axes says how far
-        from a stop the base comes to stand; stops then are where most arrivals serve all their parts. Raises InvalidInput naming
-        the field that breaks its rule.
+        from a stop the base comes to stand; stops then are where most arrivals serve all their parts. Drives keep
+        `drive_clearance` [m] to all but the ground, but within 1 m of their ends. Raises InvalidInput naming the field that breaks its rule.
         
         Keyword options:
             grid_resolution: float = 0.05  # cell edge of the base grid [m]
@@ -3126,6 +3126,11 @@ class PartSupplyProblem:
     def arrival_covariance(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         Covariance of x, y [m^2] and theta [rad^2] about a stop (3, 3); zeros: not asked for.
+        """
+    @property
+    def drive_clearance(self) -> float:
+        """
+        Kept by drives farther than 1 m from both their ends [m]; 0: not asked for.
         """
     @property
     def goal(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -7563,9 +7568,10 @@ def pairwise_weights(comparison: numpy.typing.ArrayLike, *, max_consistency_rati
     Weights by Saaty's AHP: `comparison[i, j]` says how much i is preferred to j, and [j, i] is one over it. A ratio
     above 10 % is refused, as Saaty advises.
     """
-def plan_base_route(arm: JointGroup, world: World, *, home: numpy.typing.ArrayLike, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike, resolution: float = 0.1) -> BasePath:
+def plan_base_route(arm: JointGroup, world: World, *, home: numpy.typing.ArrayLike, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike, resolution: float = 0.1, clearance: float = 0.0) -> BasePath:
     """
-    A driveable, collision-free way of the whole robot with its arm at `home`; poses are x, y, theta.
+    A driveable, collision-free way of the whole robot with its arm at `home`; poses are x, y, theta. `clearance` [m]
+    is kept to all but horizontal planes wherever the base is farther than 1 m from both ends.
     """
 def plan_cartesian(checker: CollisionChecker, tool_poses: numpy.typing.ArrayLike, near: numpy.typing.ArrayLike | None = None, *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, position_step: float = 0.005, rotation_step: float = 0.02, jump_threshold: float = 0.2, joint_step: float = 0.02, max_branches: int = 64) -> CartesianResult:
     """

@@ -260,6 +260,14 @@ class PlanToCheck:
     def drive_by(self, arg0: collections.abc.Sequence[CheckedDriveBy]) -> None:
         ...
     @property
+    def drive_clearance(self) -> float:
+        """
+        Kept by drives farther than 1 m from both their ends [m]; 0: not asked for.
+        """
+    @drive_clearance.setter
+    def drive_clearance(self, arg0: float) -> None:
+        ...
+    @property
     def drop_height(self) -> float:
         """
         Height above the bin's top plane at which parts are released [m].

@@ -110,6 +110,8 @@ def _read_body(node: Node) -> checks.CheckedBody:
 def _read_scene(plan: checks.PlanToCheck, scenario: Node) -> None:
     plan.start, plan.goal = (np.array(scenario[key].numbers(3)) for key in ("start", "goal"))
     plan.positioning_uncertainty = scenario["positioning_uncertainty"].number(least=0)
+    if "drive_clearance" in scenario:
+        plan.drive_clearance = scenario["drive_clearance"].number(above=0, most=10)
     if "arrival_covariance" in scenario:
         rows = scenario["arrival_covariance"].elements()
         plan.arrival_covariance = np.array([row.numbers(3) for row in rows])

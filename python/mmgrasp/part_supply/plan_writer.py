@@ -108,6 +108,7 @@ def scenario_to_dict(scenario: Scenario) -> dict[str, Any]:
         "goal": scenario.goal.tolist(),
         "positioning_uncertainty": scenario.positioning_uncertainty,
         **({"arrival_covariance": known.tolist()} if (known := scenario.arrival_covariance) is not None else {}),
+        **({"drive_clearance": scenario.drive_clearance} if scenario.drive_clearance else {}),
         "place_region": {
             "pose": pose_to_dict(place.T_base_bin),
             "size": place.size.tolist(),

@@ -30,7 +30,8 @@ from .tray_section import TraySetup, footprint, read_part_types, read_tray
 
 TOP_KEYS = "format version name robot start goal positioning_uncertainty trays"
 TOP_OPTIONAL = (
-    "arrival_covariance part_types gripper place_region floor obstacles allowed_collisions padding options reach"
+    "arrival_covariance drive_clearance part_types gripper place_region floor obstacles allowed_collisions padding "
+    "options reach"
 )
 FLOOR = "floor"
 MOST_TRAYS = 1000
@@ -75,6 +76,8 @@ class Scenario:
     rules: ContactRules = field(default_factory=ContactRules)
     arrival_covariance: np.ndarray | None = None
     """Covariance of x, y [m^2] and theta [rad^2] about a stop (3, 3); None: discs are all that counts."""
+    drive_clearance: float = 0.0
+    """Kept by drives farther than 1 m from both their ends [m]."""
 
     @property
     def world(self) -> World:
@@ -117,6 +120,7 @@ class Scenario:
             self.goal,
             setup.place_region,
             arrival_covariance=self.arrival_covariance,
+            drive_clearance=self.drive_clearance,
             positioning_uncertainty=self.positioning_uncertainty,
             **self.options,
         )
@@ -160,6 +164,7 @@ def _read_scenario(
         least=0, most=_core._supply_option_bounds()["positioning_uncertainty"][1]
     )
     covariance = _read_covariance(root["arrival_covariance"]) if "arrival_covariance" in root else None
+    clearance = root["drive_clearance"].number(least=0, most=10) if "drive_clearance" in root else 0.0
     options = _read_options(root, "options", _core._supply_option_table(), {"positioning_uncertainty"})
     if covariance is not None and options.get("robustness_samples", 1) == 0:
         root["options"]["robustness_samples"].fail(
@@ -210,6 +215,7 @@ def _read_scenario(
         floor,
         rules,
         covariance,
+        clearance,
     )
     for key in ("start", "goal"):
         _check_stands_free(root[key], scenario)

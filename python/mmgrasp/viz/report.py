@@ -368,6 +368,7 @@ def _facts(plan: dict[str, Any]) -> str:
         ["arm joints", escape(", ".join(scenario["arm"]["joints"]))],
         _hand(gripper),
         ["positioning uncertainty", f"{scenario['positioning_uncertainty']:.3f} m"],
+        *([["drives keep", f"{scenario['drive_clearance']:.3f} m"]] if "drive_clearance" in scenario else []),
         ["grid", f"{plan['grid']['nx']} x {plan['grid']['ny']} cells of {plan['grid']['resolution']:.3f} m"],
         ["obstacles, parts", f"{len(scenario['obstacles'])}, {len(scenario['parts'])}"],
     ]

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "support/small_storeroom.hpp"
 
@@ -106,6 +107,64 @@ TEST(BaseRoute, OutOfANicheTooTightToTurnIn) {
   const Eigen::Vector3d from(0, 0, 0), to(0, 1.5, -2.0);
   const BasePath path = room.plan(from, to);
   room.expect_driveable(path, from, to, BaseKind::diff_drive);
+}
+
+/// Least distance from all boxes that a drive keeps farther than 1 m from both its ends, looked at every 2 mm or 0.004
+/// rad.
+double kept_in_passing(Room& room, const BasePath& path) {
+  double least = std::numeric_limits<double>::infinity();
+  CollisionChecker checker(room.problem.arm, room.world);
+  for (std::size_t i = 1; i < path.poses.size(); ++i) {
+    const Eigen::Vector3d a = path.poses[i - 1], d = path.poses[i] - a;
+    const int steps = 1 + static_cast<int>(std::max(d.head<2>().norm() / 0.002, std::abs(d.z()) / 0.004));
+    for (int k = 0; k <= steps; ++k) {
+      const Eigen::Vector3d pose = a + d * (static_cast<double>(k) / steps);
+      if ((pose - path.poses.front()).head<2>().norm() <= 1 || (pose - path.poses.back()).head<2>().norm() <= 1)
+        continue;
+      checker.set_root(pose_from_planar(pose));
+      for (const DistanceResult& near : checker.distances(room.problem.home, 2.0)) {
+        if (near.with_scene) least = std::min(least, near.value);
+      }
+    }
+  }
+  return least;
+}
+
+TEST(BaseRoute, KeepsItsClearanceInPassing) {
+  for (BaseKind base : {BaseKind::diff_drive, BaseKind::omni}) {
+    Room room;
+    room.world.add_floor(room.problem.arm, 0.0);  // what the wheels stand on does not count
+    room.world.add("pillar", test::box_shape(0.4, 0.4, 1.0), test::at(2.5, 0.1, 0.5));
+    room.world.add("table", test::box_shape(0.4, 1.0, 0.8), test::at(-0.6, 0, 0.4));  // nearer than that at the start
+    const Eigen::Vector3d from(0, 0, 0), to(5, 0, 0);
+    CollisionChecker checker(room.problem.arm, room.world);
+    BaseRouteOptions options;
+    options.base = base;
+    const BasePath close = plan_base_route(checker, room.problem.home, from, to, options);
+    room.expect_driveable(close, from, to, base);
+    EXPECT_LT(kept_in_passing(room, close), 0.1);
+    for (const double clearance : {0.1, 0.3}) {
+      options.clearance = clearance;
+      const BasePath path = plan_base_route(checker, room.problem.home, from, to, options);
+      room.expect_driveable(path, from, to, base);
+      EXPECT_GE(kept_in_passing(room, path), clearance);
+      EXPECT_GT(path.length, close.length);
+    }
+  }
+}
+
+TEST(BaseRoute, ADoorTooNarrowForTheClearanceIsNoWay) {
+  Room room;
+  room.world.add("wall left", test::box_shape(0.1, 8.0, 1.0), test::at(2.5, 4.5, 0.5));
+  room.world.add("wall right", test::box_shape(0.1, 8.0, 1.0), test::at(2.5, -4.5, 0.5));  // a gap of 1 m
+  CollisionChecker checker(room.problem.arm, room.world);
+  BaseRouteOptions options;
+  options.bounds = {Eigen::Vector2d(-1, -3), Eigen::Vector2d(6, 3)};
+  EXPECT_EQ(plan_base_route(checker, room.problem.home, {0, 0, 0}, {5, 0, 0}, options).outcome, Outcome::solved);
+  options.clearance = 0.5;
+  EXPECT_EQ(plan_base_route(checker, room.problem.home, {0, 0, 0}, {5, 0, 0}, options).outcome, Outcome::not_found);
+  options.clearance = -0.1;
+  EXPECT_THROW(plan_base_route(checker, room.problem.home, {0, 0, 0}, {5, 0, 0}, options), InvalidInput);
 }
 
 TEST(BaseRoute, WalledInHasNoRoute) {

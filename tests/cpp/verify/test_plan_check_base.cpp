@@ -20,6 +20,23 @@ TEST(PlanCheckStops, ShiftedStop) {
   EXPECT_TRUE(found.count("stop-outside-region")) << "its disc of 0.2 m fills the region to the last millimetre";
 }
 
+TEST(PlanCheckStops, DriveClearance) {
+  // From stop 0 at (0.4, 0) to stop 1 at (0.4, 3) the base, 0.4 m wide, drives by a post whose side is 0.3 m from it.
+  PlanToCheck plan = good_plan();
+  const Eigen::Vector3d& a = plan.stops[0].pose;
+  const double side = a.x() - 0.2 - 0.3;
+  plan.obstacles.push_back(box("post", {0.1, 0.1, 1.0}, at(side - 0.05, 1.5, 0.5)));
+  ASSERT_EQ(codes_of(plan), Codes{});
+  plan.drive_clearance = 0.299;
+  EXPECT_EQ(codes_of(plan), Codes{});
+  plan.drive_clearance = 0.301;
+  EXPECT_EQ(codes_of(plan), Codes{"route-clearance"});
+  plan.obstacles.back() = box("post", {0.1, 0.1, 1.0}, at(side - 0.05, 0.3, 0.5));  // within 1 m of where it stands
+  EXPECT_EQ(codes_of(plan), Codes{});
+  plan.drive_clearance = -1;
+  EXPECT_TRUE(codes_of(plan).count("malformed"));
+}
+
 TEST(PlanCheckStops, TraysOfStops) {
   PlanToCheck plan = good_plan();
   plan.stops[1].trays = {"B", "A"};

@@ -45,5 +45,45 @@ TEST(Solids, MeshesMeetPlanesWhereFclSaysSo) {
   EXPECT_LT(touching, 4000);
 }
 
+Solid solid_of(const Shape& shape) {
+  return make_solids({{shape, Pose::Identity()}}).front();
+}
+
+Pose shifted(double x, double y, double z) {
+  return Pose(Eigen::Translation3d(x, y, z));
+}
+
+TEST(Solids, ComeCloserThanTheirClosedFormSays) {
+  const Solid ball = solid_of(Sphere{0.1}), block = solid_of(Box{Eigen::Vector3d(0.4, 0.2, 0.6)});
+  const Solid tin = solid_of(Cylinder{0.15, 0.5}), pyramid = solid_of(MeshShape{two_pieces()});
+  const Solid wall = solid_of(Plane{Eigen::Vector3d::UnitX(), -1.0});  // all below x = -1
+  struct Row {
+    const Solid &a, &b;
+    Pose T_a, T_b;
+    double distance;
+  };
+  const std::vector<Row> rows = {
+      {ball, block, shifted(0.5, 0, 0), shifted(0, 0, 0), 0.2},
+      {ball, block, shifted(0.5, 0.5, 0), shifted(0, 0, 0), std::hypot(0.3, 0.4) - 0.1},  // past an edge
+      {tin, block, shifted(0, 0.55, 0), shifted(0, 0, 0), 0.3},
+      {tin, tin, shifted(1, 0, 0.7), shifted(0, 0, 0), std::hypot(0.7, 0.2)},  // from rim to rim
+      {pyramid, ball, shifted(0, 0, 0), shifted(0, 0, 0.55), 0.15},
+      {pyramid, block, shifted(0, 0, 0), shifted(0, 0, 0.85), 0.25},
+      {pyramid, pyramid, shifted(0, 0, 0), shifted(0, -1.0, 0), 0.47},
+      {wall, ball, shifted(0, 0, 0), shifted(0, 3, 2), 0.9},
+      {wall, pyramid, shifted(0.5, 0, 0), shifted(0, 0, 0), 0.3},
+      {block, wall, shifted(0.2, 0, 0), shifted(0.3, 5, 0), 0.7},
+  };
+  for (const Row& row : rows) {
+    const long index = &row - rows.data();
+    EXPECT_FALSE(closer_than(row.distance - 1e-5, row.a, row.T_a, row.b, row.T_b)) << index;
+    EXPECT_TRUE(closer_than(row.distance + 1e-5, row.a, row.T_a, row.b, row.T_b)) << index;
+    EXPECT_FALSE(closer_than(row.distance - 1e-5, row.b, row.T_b, row.a, row.T_a)) << index;
+    EXPECT_TRUE(closer_than(row.distance + 1e-5, row.b, row.T_b, row.a, row.T_a)) << index;
+  }
+  const Solid grain = solid_of(Sphere{0.01});
+  EXPECT_TRUE(closer_than(0.001, pyramid, shifted(0, 0, 0), grain, shifted(0, 0, 0.1))) << "within a closed mesh";
+}
+
 }  // namespace
 }  // namespace mmgrasp::verify::detail

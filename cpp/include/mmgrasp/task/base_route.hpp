@@ -12,12 +12,19 @@
 
 namespace mmgrasp {
 
+/// Stops lie close to what is picked there: within this distance of either end of a drive no clearance is asked for
+/// [m].
+inline constexpr double kNearEnds = 1.0;
+
 /// How the base can move, where it may, and how finely plan_base_route() searches the floor.
 struct MMGRASP_EXPORT BaseRouteOptions {
   BaseKind base = BaseKind::diff_drive;
   /// Cell edge of the search [m]; > 0. Made coarser where the floor would have more than 500,000 cells.
   double resolution = 0.10;
   double check_step = 0.02;  ///< Largest motion of the base between two collision checks [m]; > 0.
+  /// The whole robot stays this far from all but horizontal planes, wherever the base is farther than kNearEnds from
+  /// both ends [m]; in [0, 10].
+  double clearance = 0;
   Eigen::AlignedBox2d
       bounds;  ///< The search stays in here [m]; empty: the scene's bounds plus start and goal, grown by 2 m.
   void check() const;

@@ -103,6 +103,9 @@ struct MMGRASP_EXPORT PartSupplyProblem {
   /// errors normally distributed. Stops then stand where most arrivals serve all their parts. Zero: not asked for,
   /// discs of the positioning uncertainty are all that counts.
   Eigen::Matrix3d arrival_covariance = Eigen::Matrix3d::Zero();
+  /// Drives keep this far from all but the ground wherever the base is farther than kNearEnds from both their ends [m];
+  /// in [0, 10]. Motions in passing are not asked for it.
+  double drive_clearance = 0;
   /// Throws InvalidInput naming the field, the value and the rule.
   void check() const;
 };

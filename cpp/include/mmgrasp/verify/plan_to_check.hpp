@@ -193,6 +193,8 @@ struct MMGRASP_EXPORT PlanToCheck {
   double positioning_uncertainty = 0.1;             ///< Radius of the disc in which the base comes to stand [m].
   /// Covariance of x, y [m^2] and theta [rad^2] about a stop, in the world's axes; zero: arrivals are not judged.
   Eigen::Matrix3d arrival_covariance = Eigen::Matrix3d::Zero();
+  /// Drives stay this far from all but the ground where the base is farther than 1 m from both their ends [m]; >= 0.
+  double drive_clearance = 0;
   double approach_distance = 0;                          ///< Least straight way to a grasp [m]; >= 0.
   double lift_height = 0.01;                             ///< Least straight way up after closing [m]; > 0.
   Pose T_base_bin = Pose::Identity();                    ///< Middle of the bin's top plane in the root frame, z up.

@@ -6,6 +6,7 @@
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/pose.hpp"
 #include "mmgrasp/robot/detail/base_workspace.hpp"
+#include "mmgrasp/task/base_route.hpp"
 
 namespace mmgrasp::detail {
 namespace {
@@ -38,6 +39,30 @@ Extent robot_extent(const JointGroup& arm, const Eigen::VectorXd& home) {
   return extent;
 }
 
+bool is_ground(const WorldObject& object) {
+  return std::all_of(object.shapes.begin(), object.shapes.end(), [&](const LinkShape& item) {
+    const auto* plane = std::get_if<Plane>(&item.shape);
+    if (plane == nullptr) return false;
+    const Eigen::Vector3d normal = object.T_world_object.linear() * (item.T_link_shape.linear() * plane->normal);
+    return normal.normalized().z() > 1 - 1e-9;
+  });
+}
+
+World without_ground(World world) {
+  std::vector<std::string> ground;
+  for (const auto& [name, object] : world.objects()) {
+    if (is_ground(object)) ground.push_back(name);
+  }
+  for (const std::string& name : ground) world.remove(name);
+  return world;
+}
+
+CheckerOptions padded_by(CheckerOptions options, double padding) {
+  options.padding = std::max(options.padding, padding);
+  options.check_self = false;
+  return options;
+}
+
 }  // namespace
 
 BaseClearance::BaseClearance(CollisionChecker& checker, const Eigen::VectorXd& home, double check_step)
@@ -62,6 +87,21 @@ BaseClearance::BaseClearance(CollisionChecker& checker, const Eigen::VectorXd& h
   home_is_sound_ = here != Rejection::limits && here != Rejection::self_collision;
 }
 
+void BaseClearance::keep(double clearance, const std::vector<Eigen::Vector3d>& ends) {
+  if (!(clearance > 0)) return;
+  for (const Eigen::Vector3d& end : ends) ends_.emplace_back(end.head<2>());
+  const double between = 0.5 * check_step_ + 0.5 * kTurnStep * radius_;  // no point of the robot gets farther
+  padded_.emplace(checker_.group(), without_ground(checker_.world()),
+                  padded_by(checker_.options(), clearance + between));
+  padded_clearance_ = std::make_unique<BaseClearance>(*padded_, home_, check_step_);
+}
+
+bool BaseClearance::is_near_an_end(const Eigen::Vector2d& position) const {
+  const double near = kNearEnds - check_step_;  // what lies between two poses is not farther than kNearEnds either
+  return std::any_of(ends_.begin(), ends_.end(),
+                     [&](const Eigen::Vector2d& end) { return (position - end).norm() <= near; });
+}
+
 bool BaseClearance::nothing_near(const Eigen::Vector2d& position) const {
   const double reach = radius_ * radius_;
   for (const Eigen::AlignedBox2d& box : obstacles_) {
@@ -72,6 +112,7 @@ bool BaseClearance::nothing_near(const Eigen::Vector2d& position) const {
 
 bool BaseClearance::free(const Eigen::Vector3d& pose) {
   if (!home_is_sound_ || !in_workspace(checker_.group().robot().base_limits(), pose)) return false;
+  if (padded_clearance_ && !is_near_an_end(pose.head<2>()) && !padded_clearance_->free(pose)) return false;
   if (nothing_near(pose.head<2>())) return true;
   checker_.set_root(pose_from_planar(pose));
   return checker_.rejection(home_) == Rejection::none;

@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "mmgrasp/collision/checker.hpp"
@@ -13,7 +15,11 @@ namespace mmgrasp::detail {
 class BaseClearance {
  public:
   BaseClearance(CollisionChecker& checker, const Eigen::VectorXd& home, double check_step);
+  BaseClearance(const BaseClearance&) = delete;
 
+  /// From now on the robot also keeps `clearance` [m] to all but horizontal planes where the base is farther than
+  /// kNearEnds from all of `ends`, between two poses that are looked at, too.
+  void keep(double clearance, const std::vector<Eigen::Vector3d>& ends);
   bool free(const Eigen::Vector3d& pose);
   /// Straight in (x, y, theta), ends included, at steps of at most check_step and 0.05 rad.
   bool segment_free(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
@@ -22,6 +28,7 @@ class BaseClearance {
 
  private:
   bool nothing_near(const Eigen::Vector2d& position) const;
+  bool is_near_an_end(const Eigen::Vector2d& position) const;
 
   CollisionChecker& checker_;
   const Eigen::VectorXd& home_;
@@ -29,6 +36,9 @@ class BaseClearance {
   bool home_is_sound_ = true;  // inside limits and without self-collision
   double radius_ = 0;
   std::vector<Eigen::AlignedBox2d> obstacles_;  // floor plans of the objects at the robot's height
+  std::vector<Eigen::Vector2d> ends_;           // near which no clearance is asked for
+  std::optional<CollisionChecker> padded_;      // the robot grown by the clearance, without the ground
+  std::unique_ptr<BaseClearance> padded_clearance_;
 };
 
 /// Ways to get from one base pose to another by few primitive motions, cheapest first: turn - drive - turn (forwards or

@@ -102,6 +102,7 @@ Eigen::AlignedBox2d around(const Eigen::AlignedBox2d& floor, const Eigen::Vector
 void BaseRouteOptions::check() const {
   require_length(resolution, "route.resolution");
   require_length(check_step, "route.check_step");
+  require_within(clearance, 0, 10, "route.clearance", "m");
 }
 
 BasePath plan_base_route(CollisionChecker& checker, const Eigen::VectorXd& home, const Eigen::Vector3d& from,
@@ -112,6 +113,7 @@ BasePath plan_base_route(CollisionChecker& checker, const Eigen::VectorXd& home,
   require_numbers(to, "to", "m, rad");
   BasePath path;
   BaseClearance clearance(checker, home, options.check_step);
+  clearance.keep(options.clearance, {from, to});
   if (!clearance.free(from) || !clearance.free(to)) {
     path.outcome = clearance.free(from) ? Outcome::invalid_goal : Outcome::invalid_start;
     return path;
@@ -150,6 +152,7 @@ BasePath plan_base_route(CollisionChecker& checker, const Eigen::VectorXd& home,
     merge_primitives(options.base, poses);
   }
   BaseClearance fine(checker, home, 0.5 * options.check_step);
+  fine.keep(options.clearance, {from, to});
   if (!path_free(fine, poses, 0, poses.size() - 1)) return path;
   path.outcome = Outcome::solved;
   path.poses = std::move(poses);
@@ -168,7 +171,7 @@ Eigen::MatrixXd route_lengths(const CollisionChecker& checker, const Eigen::Vect
   for (std::size_t i = 0; i < poses.size(); ++i)
     require_numbers(poses[i], "poses[" + std::to_string(i) + "]", "m, rad");
   if (poses.empty()) return Eigen::MatrixXd(0, 0);
-  const detail::FloorField field(checker, home, options.base, poses, options.resolution, threads, monitor);
+  const detail::FloorField field(checker, home, options, poses, threads, monitor);
   return field.complete() ? field.lengths() : Eigen::MatrixXd();
 }
 

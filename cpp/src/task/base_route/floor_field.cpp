@@ -47,16 +47,15 @@ Eigen::AlignedBox2d floor_bounds(const World& world, const std::vector<Eigen::Ve
   return bounds.intersection(Eigen::AlignedBox2d(Eigen::Vector2d(-edge, -edge), Eigen::Vector2d(edge, edge)));
 }
 
-FloorField::FloorField(const CollisionChecker& checker, const Eigen::VectorXd& home, BaseKind base,
-                       const std::vector<Eigen::Vector3d>& places, double resolution, int threads,
-                       const Monitor& monitor)
+FloorField::FloorField(const CollisionChecker& checker, const Eigen::VectorXd& home, const BaseRouteOptions& options,
+                       const std::vector<Eigen::Vector3d>& places, int threads, const Monitor& monitor)
     : bounds_(floor_bounds(checker.world(), places, checker.group().robot().base_limits().workspace)) {
   const Eigen::Vector2d size = bounds_.sizes();
-  resolution_ = std::max(resolution, std::sqrt(size.x() * size.y() / kMaxCells));
+  resolution_ = std::max(options.resolution, std::sqrt(size.x() * size.y() / kMaxCells));
   nx_ = static_cast<int>(std::ceil(size.x() / resolution_));
   ny_ = static_cast<int>(std::ceil(size.y() / resolution_));
   free_.assign(static_cast<std::size_t>(nx_) * ny_, 0);
-  look_at_rows(checker, home, base, threads, monitor);
+  look_at_rows(checker, home, options, places, threads, monitor);
   const auto n = static_cast<Eigen::Index>(places.size());
   lengths_ = Eigen::MatrixXd::Zero(n, n);
   complete_ = parallel_for(
@@ -75,13 +74,15 @@ FloorField::FloorField(const CollisionChecker& checker, const Eigen::VectorXd& h
       monitor, "route");
 }
 
-void FloorField::look_at_rows(const CollisionChecker& checker, const Eigen::VectorXd& home, BaseKind base, int threads,
+void FloorField::look_at_rows(const CollisionChecker& checker, const Eigen::VectorXd& home,
+                              const BaseRouteOptions& options, const std::vector<Eigen::Vector3d>& places, int threads,
                               const Monitor& monitor) {
   parallel_for(
       ny_, threads,
       [&](std::size_t row, int) {
         CollisionChecker own = checker.clone();
         BaseClearance clearance(own, home, kCheckStep);
+        clearance.keep(options.clearance, places);
         const int iy = static_cast<int>(row);
         for (int ix = 0; ix < nx_; ++ix) {
           unsigned free = 0;
@@ -91,7 +92,7 @@ void FloorField::look_at_rows(const CollisionChecker& checker, const Eigen::Vect
             if (clearance.free({p.x(), p.y(), angle}) || clearance.free({p.x(), p.y(), angle + kPi}))
               free |= 1u << axis;
           }
-          if (base == BaseKind::omni && free != 0) free = 0xff;
+          if (options.base == BaseKind::omni && free != 0) free = 0xff;
           free_[cell(ix, iy)] = static_cast<unsigned char>(free);
         }
       },

@@ -5,7 +5,7 @@
 
 #include "mmgrasp/collision/checker.hpp"
 #include "mmgrasp/core/monitor.hpp"
-#include "mmgrasp/robot/planar_base.hpp"
+#include "mmgrasp/task/base_route.hpp"
 
 namespace mmgrasp::detail {
 
@@ -19,10 +19,10 @@ Eigen::AlignedBox2d floor_bounds(const World& world, const std::vector<Eigen::Ve
 /// 16 directions, and places join the cells around them unchecked.
 class FloorField {
  public:
-  /// `resolution` is made coarser where the floor would have more than some ten thousand cells. Not complete when the
+  /// The resolution is made coarser where the floor would have more than some ten thousand cells. Not complete when the
   /// monitor ends it.
-  FloorField(const CollisionChecker& checker, const Eigen::VectorXd& home, BaseKind base,
-             const std::vector<Eigen::Vector3d>& places, double resolution, int threads, const Monitor& monitor);
+  FloorField(const CollisionChecker& checker, const Eigen::VectorXd& home, const BaseRouteOptions& options,
+             const std::vector<Eigen::Vector3d>& places, int threads, const Monitor& monitor);
 
   bool complete() const { return complete_; }
   /// Lengths between all places; infinite where no way was found.
@@ -34,8 +34,8 @@ class FloorField {
     return bounds_.min() + resolution_ * Eigen::Vector2d(ix + 0.5, iy + 0.5);
   }
   bool passable(int ix, int iy, int direction) const;
-  void look_at_rows(const CollisionChecker& checker, const Eigen::VectorXd& home, BaseKind base, int threads,
-                    const Monitor& monitor);
+  void look_at_rows(const CollisionChecker& checker, const Eigen::VectorXd& home, const BaseRouteOptions& options,
+                    const std::vector<Eigen::Vector3d>& places, int threads, const Monitor& monitor);
   std::vector<double> search(const Eigen::Vector2d& from) const;
   /// Calls visit(cell, distance) for the cells around a place.
   template <class Visit>

@@ -50,6 +50,7 @@ BasePath BaseRoutes::plan(CollisionChecker& padded, CollisionChecker& bare, cons
     BaseRouteOptions options;
     options.base = problem_.robot.base();
     options.resolution = resolution;
+    options.clearance = problem_.drive_clearance;
     return plan_base_route(checker, problem_.home, from, to, options, monitor);
   };
   const auto search_both = [&](double resolution) {
@@ -105,6 +106,7 @@ Eigen::MatrixXd BaseRoutes::estimates(const std::vector<Eigen::Vector3d>& poses)
   BaseRouteOptions options;
   options.base = problem_.robot.base();
   options.resolution = problem_.options.route_resolution;
+  options.clearance = problem_.drive_clearance;
   return route_lengths(bare_, problem_.home, poses, options, problem_.options.threads, monitor_);
 }
 

@@ -40,12 +40,15 @@ Obstruction explain_robustness(const RobustnessResult& check, const std::vector<
 }
 
 Obstruction explain_route(const Eigen::Vector3d& from, bool from_stop, const Eigen::Vector3d& to,
-                          const std::string& tray, const BasePath& searched) {
+                          const std::string& tray, const BasePath& searched, double smaller_clearance) {
   Obstruction obstruction;
   obstruction.stage = "route";
   obstruction.tray = tray;
   const std::string cells = searched.cell > 0 ? " in cells of " + six_digits(searched.cell) + " m" : "";
-  if (searched.outcome == Outcome::timeout) {
+  if (smaller_clearance >= 0) {
+    obstruction.message = "no drive from " + ends_of_drive(from, from_stop, " to ", to, tray) +
+                          " keeps drive_clearance: there is one with drive_clearance: " + six_digits(smaller_clearance);
+  } else if (searched.outcome == Outcome::timeout) {
     obstruction.message = "the search for a drive from " + ends_of_drive(from, from_stop, " to ", to, tray) +
                           " gave up" + cells +
                           " before it had tried every way, and larger cells lead nowhere: widen the way or keep the "

@@ -19,9 +19,10 @@ Obstruction explain_region(const PartSupplyProblem& problem, const ReachDatabase
 Obstruction explain_robustness(const RobustnessResult& check, const std::vector<Stop>& stops);
 
 /// Explains that no drive leads from the start, or a stop, to a base pose, or that the search for it gave up; `tray` is
-/// the one to be served there, empty for the goal, `searched` what came of the search.
+/// the one to be served there, empty for the goal, `searched` what came of the search; with `smaller_clearance` [m]
+/// there is one, unless it is negative.
 Obstruction explain_route(const Eigen::Vector3d& from, bool from_stop, const Eigen::Vector3d& to,
-                          const std::string& tray, const BasePath& searched);
+                          const std::string& tray, const BasePath& searched, double smaller_clearance);
 
 /// Explains that no arm motion was found for this pick from a base pose; `remedies` as of pick_remedies().
 Obstruction explain_motion(const PartSupplyProblem& problem, const Eigen::Vector3d& base_pose, const Pick& failed,

@@ -27,6 +27,7 @@ namespace {
 
 constexpr int kRobustnessRounds = 5;
 constexpr double kRequiredRate = 0.999;   // Share of the base poses drawn at each stop that must work in the end.
+constexpr double kLeastClearance = 0.01;  // Smaller ones are not advised [m].
 constexpr std::size_t kAlternatives = 4;  // Base poses tried where no motion was found at a stop.
 constexpr int kMotionRounds = 4;          // Sets of stops tried when no motion was found at some stop.
 
@@ -264,7 +265,22 @@ class PartSupply {
     const std::string tray = stop < 0 ? "" : first_tray(stop);
     const BasePath searched = routes.between(from, to);
     if (searched.outcome == Outcome::timeout) plan_.outcome = Outcome::timeout;
-    return obstructed(explain_route(from, last_stop >= 0, to, tray, searched));
+    return obstructed(explain_route(from, last_stop >= 0, to, tray, searched, smaller_clearance(from, to)));
+  }
+
+  /// The first of a half of the drives' clearance, a quarter, ... in whole millimetres, with which this drive and an
+  /// order of the stops are found; 0: without any, negative: not even so, or none was asked for.
+  double smaller_clearance(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const {
+    PartSupplyProblem smaller = problem_;
+    while (smaller.drive_clearance > 0 && !monitor_.stopped()) {
+      const double half = std::floor(500 * smaller.drive_clearance) / 1000;
+      smaller.drive_clearance = half < kLeastClearance ? 0 : half;
+      BaseRoutes routes(smaller, monitor_);
+      const bool is_there = routes.between(from, to).outcome == Outcome::solved;
+      if (is_there && order_stops(smaller, plan_.stops, routes).stops.size() == plan_.stops.size())
+        return smaller.drive_clearance;
+    }
+    return -1;
   }
 
   std::vector<PartRef> remaining(const std::set<PartRef>& picked) const {

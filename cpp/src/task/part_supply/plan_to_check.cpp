@@ -119,6 +119,7 @@ void set_task(const PartSupplyProblem& problem, PlanToCheck& check) {
   check.goal = problem.goal;
   check.positioning_uncertainty = problem.options.positioning_uncertainty;
   check.arrival_covariance = problem.arrival_covariance;
+  check.drive_clearance = problem.drive_clearance;
   check.approach_distance = problem.options.approach_distance;
   check.lift_height = problem.options.lift_height;
   check.T_base_bin = problem.place_region.T_base_bin;

@@ -180,6 +180,7 @@ void add_rules(const PartSupplyProblem& problem, const PlanToCheck& check, std::
     for (int i = 0; i < 3; ++i) rows.push_back(json_numbers(Eigen::Vector3d(check.arrival_covariance.row(i))));
     members.emplace_back("arrival_covariance", json_array(rows));
   }
+  if (check.drive_clearance > 0) members.emplace_back("drive_clearance", json_number(check.drive_clearance));
   if (!check.allowed_collisions.empty()) {
     members.emplace_back("allowed_collisions", json_array_of(check.allowed_collisions, [](const auto& pair) {
                            return json_texts({pair.first, pair.second});

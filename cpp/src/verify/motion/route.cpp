@@ -11,6 +11,8 @@ namespace {
 constexpr double kSamePose = 1e-6;     // Poses that differ by no more are the same [m, rad].
 constexpr double kLimitSlack = 1e-5;   // [rad or m]; what limits and values printed to five digits lose
 constexpr double kLargest = 1e6;       // No larger pose can be computed with [m, rad].
+constexpr double kNearEnds = 1.0;      // Nearer to an end of a drive no clearance is asked for [m].
+constexpr double kRounding = 1e-5;     // [m]; what distances of FCL lose
 constexpr double kMaxSteps = 1000000;  // Base poses of one leg.
 
 bool same_pose(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
@@ -234,13 +236,26 @@ class RouteCheck {
       for (int k = 1; k <= static_cast<int>(steps); ++k) {
         const Eigen::Vector3d pose = poses[i] - step * (1 - k / steps);
         judge_.set_base(pose);
-        const Touch touch = judge_.touch(plan_.home, 0);
-        if (!touch) continue;
-        faults_.push_back(
-            {"route-collision", where + ", base at " + text(pose), "'" + touch.a + "' touches '" + touch.b + "'"});
-        return;
+        const std::string at = where + ", base at " + text(pose);
+        if (const Touch touch = judge_.touch(plan_.home, 0)) {
+          faults_.push_back({"route-collision", at, "'" + touch.a + "' touches '" + touch.b + "'"});
+          return;
+        }
+        const bool passes =
+            (pose - poses.front()).head<2>().norm() > kNearEnds && (pose - poses.back()).head<2>().norm() > kNearEnds;
+        if (passes && !keeps_clearance(at)) return;
       }
     }
+  }
+
+  bool keeps_clearance(const std::string& where) {
+    if (plan_.drive_clearance <= kRounding) return true;
+    const Touch near = judge_.comes_near(plan_.home, 0, plan_.drive_clearance - kRounding);
+    if (!near) return true;
+    faults_.push_back({"route-clearance", where,
+                       "'" + near.a + "' comes closer to '" + near.b + "' than the " + text(plan_.drive_clearance) +
+                           " m of drive_clearance"});
+    return false;
   }
 
   const Context& context_;

@@ -8,6 +8,7 @@
 #include <fcl/geometry/shape/sphere.h>
 #include <fcl/math/bv/OBBRSS.h>
 #include <fcl/narrowphase/collision.h>
+#include <fcl/narrowphase/distance.h>
 
 #include <algorithm>
 #include <cmath>
@@ -160,6 +161,15 @@ bool mesh_below_plane(const Solid& mesh, const Pose& T_mesh, const Solid& plane,
                      [&](const auto& t) { return below(t[0]) || below(t[1]) || below(t[2]); });
 }
 
+/// A plane moved outwards; other solids stay as they are.
+Solid grown_plane(const Solid& solid, double by) {
+  if (!solid.unbounded) return solid;
+  const auto& half_space = static_cast<const fcl::Halfspaced&>(*solid.geometry);
+  Solid grown = solid;
+  grown.geometry = std::make_shared<fcl::Halfspaced>(half_space.n, half_space.d + by);
+  return grown;
+}
+
 }  // namespace
 
 std::vector<Solid> make_solids(const std::vector<LinkShape>& shapes) {
@@ -188,6 +198,15 @@ bool touches(const Solid& a, const Pose& T_a, const Solid& b, const Pose& T_b) {
   fcl::CollisionResultd result;
   fcl::collide(a.geometry.get(), T_a, b.geometry.get(), T_b, request, result);
   return result.isCollision() || swallows(a, T_a, b, T_b) || swallows(b, T_b, a, T_a);
+}
+
+bool closer_than(double margin, const Solid& a, const Pose& T_a, const Solid& b, const Pose& T_b) {
+  if (touches(a, T_a, b, T_b)) return true;
+  if (a.unbounded || b.unbounded) return touches(grown_plane(a, margin), T_a, grown_plane(b, margin), T_b);
+  static const fcl::DistanceRequestd request;
+  fcl::DistanceResultd result;
+  fcl::distance(a.geometry.get(), T_a, b.geometry.get(), T_b, request, result);
+  return result.min_distance < margin;
 }
 
 double radius_of(const std::vector<Solid>& solids) {

@@ -33,6 +33,10 @@ Bounds bounds_at(const Solid& solid, const Pose& T_world_shape);
 /// True when two solids at these shape frames share a point. A solid wholly inside a closed mesh touches it.
 MMGRASP_EXPORT bool touches(const Solid& a, const Pose& T_world_a, const Solid& b, const Pose& T_world_b);
 
+/// True when two solids at these shape frames touch or come closer than `margin` [m].
+MMGRASP_EXPORT bool closer_than(double margin, const Solid& a, const Pose& T_world_a, const Solid& b,
+                                const Pose& T_world_b);
+
 /// Largest distance of any point of the shapes from the body's origin (an upper bound); infinite for planes.
 double radius_of(const std::vector<Solid>& solids);
 

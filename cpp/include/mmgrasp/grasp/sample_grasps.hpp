@@ -35,6 +35,9 @@ struct MMGRASP_EXPORT GraspSamplerOptions {
 ///   finger_depth x finger_width, rest on the outermost points under them: that gives opening and middle of the grasp.
 ///   Left out are those at which what they touch is steeper than friction allows, or lies so far apart on the two sides
 ///   that the part would turn. What leaves no room for a finger behind a pad counts as under it.
+/// - Where the tips of the pads would reach beyond the object's far face along the approach, since it is thinner than
+///   they are long or the contacts are near that face, a second hand stops with them flush with it (`tips_flush`): the
+///   object may lie on something. It goes first among equally good ones; pairs one behind the other give one such hand.
 /// - Pairs wider than max_opening are counted in `too_wide`, those too wide under the pads from everywhere as well. A
 /// part that leaves less than the wanted clearance is kept
 ///   (the clearance shrinks, see Hand::pregrasp_opening) with a lower quality.

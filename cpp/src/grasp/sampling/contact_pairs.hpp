@@ -44,7 +44,9 @@ ContactPairs surface_pairs(const std::vector<LinkShape>& object, double max_open
 /// Any unit vector orthogonal to a unit vector; the same for the same input.
 Eigen::Vector3d orthogonal_to(const Eigen::Vector3d& axis);
 
-/// Share of a pad (depth along `approach`, width across) that lies on the face, in [0, 1].
-double pad_overlap(const ContactFace& face, const Eigen::Vector3d& approach, double depth, double width);
+/// Share of a pad (depth along `approach`, width across) that lies on the face, in [0, 1]; the pad's middle stays
+/// `standoff` [m] before the contact.
+double pad_overlap(const ContactFace& face, const Eigen::Vector3d& approach, double standoff, double depth,
+                   double width);
 
 }  // namespace mmgrasp::detail

@@ -10,6 +10,7 @@
 namespace mmgrasp::detail {
 namespace {
 
+using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kGive = 5e-4;  // A pad is touched by what lies this deep under its outermost point [m].
@@ -36,18 +37,23 @@ double lowest_touched(const ContactPair& pair) {
 class UnderPads {
  public:
   UnderPads(const ContactPair& pair, const Vector3d& approach, const Hand& hand, double standoff)
-      : middle_(pair.middle),
-        lowest_(lowest_touched(pair)),
-        edges_{HalfPlane{{1, 0}, hand.finger_depth / 2 - standoff},
-               HalfPlane{{-1, 0}, hand.finger_depth / 2 + standoff}, HalfPlane{{0, 1}, hand.finger_width / 2},
-               HalfPlane{{0, -1}, hand.finger_width / 2}} {
-    axes_ << approach.transpose(), pair.axis.cross(approach).transpose(), pair.axis.transpose();
+      : lowest_(lowest_touched(pair)),
+        standoff_(standoff),
+        half_(hand.finger_depth / 2, hand.finger_width / 2),
+        edges_{HalfPlane{{1, 0}, half_.x() - standoff}, HalfPlane{{-1, 0}, half_.x() + standoff},
+               HalfPlane{{0, 1}, half_.y()}, HalfPlane{{0, -1}, half_.y()}} {
+    const double cosine = approach.dot(pair.first_approach);
+    const double sine = approach.dot(pair.axis.cross(pair.first_approach));
+    turn_ << cosine, sine, -sine, cosine;
   }
 
   /// Adds what the fingers on the two sides may touch, first that where the pair's axis points.
-  void add(const std::array<Vector3d, 3>& triangle, std::array<std::vector<Piece>, 2>& pieces) const {
+  void add(const NearTriangle& triangle, std::array<std::vector<Piece>, 2>& pieces) const {
+    Vector2d off = turn_ * triangle.centre;
+    off.x() += standoff_;
+    if (((off.cwiseAbs() - half_).array() > triangle.radius).any()) return;
     Piece piece;
-    for (int i = 0; i < 3; ++i) piece.corners[i] = axes_ * (triangle[i] - middle_);
+    for (int i = 0; i < 3; ++i) piece.corners[i] << turn_ * triangle.corners[i].head<2>(), triangle.corners[i].z();
     bool whole = true;
     for (const HalfPlane& edge : edges_) {
       int beyond = 0;
@@ -83,9 +89,9 @@ class UnderPads {
     return seen;
   }
 
-  Eigen::Matrix3d axes_;
-  Vector3d middle_;
-  double lowest_;
+  double lowest_, standoff_;
+  Vector2d half_;         // Half sizes of the pads along the approach and across.
+  Eigen::Matrix2d turn_;  // From the pair's first approach to this one.
   std::array<HalfPlane, 4> edges_;
 };
 
@@ -149,28 +155,31 @@ PadSeats::PadSeats(const JoinedSurface& surface, const Hand& hand, const GraspSa
   }
 }
 
-std::vector<int> PadSeats::near(const ContactPair& pair) const {
-  const double radius = std::hypot(hand_.finger_depth / 2 + std::abs(options_.standoff), hand_.finger_width / 2);
+std::vector<NearTriangle> PadSeats::near(const ContactPair& pair, double standoff) const {
+  const double radius = std::hypot(hand_.finger_depth / 2 + std::abs(standoff), hand_.finger_width / 2);
   const double lowest = lowest_touched(pair);
-  std::vector<int> found;
+  Eigen::Matrix3d axes;
+  axes << pair.first_approach.transpose(), pair.axis.cross(pair.first_approach).transpose(), pair.axis.transpose();
+  std::vector<NearTriangle> found;
   for (std::size_t t = 0; t < centres_.size(); ++t) {
-    const Vector3d arm = centres_[t] - pair.middle;
-    const double along = arm.dot(pair.axis), reach = radius + radii_[t];
-    if (std::abs(along) + radii_[t] < lowest) continue;
-    if (arm.squaredNorm() - along * along <= reach * reach) found.push_back(static_cast<int>(t));
+    const Vector3d centre = axes * (centres_[t] - pair.middle);
+    if (std::abs(centre.z()) + radii_[t] < lowest) continue;
+    const double reach = radius + radii_[t];
+    if (centre.head<2>().squaredNorm() > reach * reach) continue;
+    NearTriangle triangle{{}, centre.head<2>(), radii_[t]};
+    for (int i = 0; i < 3; ++i)
+      triangle.corners[i] = axes * (surface_.mesh.vertices[surface_.mesh.triangles[t][i]] - pair.middle);
+    found.push_back(triangle);
   }
   return found;
 }
 
-std::optional<PadSeat> PadSeats::seat(const ContactPair& pair, const Vector3d& approach,
-                                      const std::vector<int>& near) const {
-  if (std::abs(options_.standoff) > hand_.finger_depth / 2) return {};  // the contacts are not under the pads
-  const UnderPads under(pair, approach, hand_, options_.standoff);
+std::optional<PadSeat> PadSeats::seat(const ContactPair& pair, const Vector3d& approach, double standoff,
+                                      const std::vector<NearTriangle>& near) const {
+  if (std::abs(standoff) > hand_.finger_depth / 2) return {};  // the contacts are not under the pads
+  const UnderPads under(pair, approach, hand_, standoff);
   std::array<std::vector<Piece>, 2> pieces;
-  for (const int t : near) {
-    const auto& [i, j, k] = surface_.mesh.triangles[t];
-    under.add({surface_.mesh.vertices[i], surface_.mesh.vertices[j], surface_.mesh.vertices[k]}, pieces);
-  }
+  for (const NearTriangle& triangle : near) under.add(triangle, pieces);
   const double gap = std::max(hand_.clearance, hand_.body.finger_thickness);
   const auto on_side = [&](int side) { return touch(under, pieces[side], pair.width / 2, gap, surface_.solid); };
   const Touch touched[] = {on_side(0), on_side(1)};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -15,19 +16,28 @@ struct PadSeat {
   double alignment;        ///< As ContactPair's, of what the pads touch.
 };
 
+/// A triangle that may come under pads at a pair of contacts, seen from their middle along the pair's first approach,
+/// across it, and along its axis.
+struct NearTriangle {
+  std::array<Eigen::Vector3d, 3> corners;
+  Eigen::Vector2d centre;  ///< Of its ball, along and across.
+  double radius;           ///< Of its ball [m].
+};
+
 /// Pads are flat and wider than a contact: on a slanted or bent surface they rest on the outermost points under them,
 /// and the hand, whose fingers close alike, moves the part (or itself) to the middle of these.
 class PadSeats {
  public:
   PadSeats(const JoinedSurface& surface, const Hand& hand, const GraspSamplerOptions& options);
 
-  /// The triangles that may come under pads at this pair, whatever the approach: for seat().
-  std::vector<int> near(const ContactPair& pair) const;
-  /// None where the pads find no hold: what they touch is steeper than friction allows, or on the two sides so far
-  /// apart that the part turns between them. A finger needs its thickness, or the hand's
-  /// clearance if that is more: what leaves less room behind a pad is under it, too.
-  std::optional<PadSeat> seat(const ContactPair& pair, const Eigen::Vector3d& approach,
-                              const std::vector<int>& near) const;
+  /// The triangles that may come under pads at this pair, whatever the approach, with the tool frame no farther than
+  /// `standoff` from the contacts [m]: for seat().
+  std::vector<NearTriangle> near(const ContactPair& pair, double standoff) const;
+  /// The tool frame stays `standoff` before the contacts. None where the pads find no hold: what they touch is steeper
+  /// than friction allows, or on the two sides so far apart that the part turns between them. A finger needs its
+  /// thickness, or the hand's clearance if that is more: what leaves less room behind a pad is under it, too.
+  std::optional<PadSeat> seat(const ContactPair& pair, const Eigen::Vector3d& approach, double standoff,
+                              const std::vector<NearTriangle>& near) const;
 
  private:
   const JoinedSurface& surface_;

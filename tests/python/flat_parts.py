@@ -59,6 +59,7 @@ def drawn_part(seed: int, folder: Path) -> tuple[dict[str, Any], dict[str, Any]]
         "xyz": [draw.uniform(-0.06, 0.06), draw.uniform(-0.10, 0.10)],
         "rpy": [0.0, 0.0, draw.uniform(-math.pi, math.pi)],
     }
+    part: dict[str, Any]
     if draw.random() < 0.5:
         size = [draw.uniform(0.03, 0.09), draw.uniform(0.02, 0.08), thickness]
         part, outline = {"box": size}, box(size)

@@ -85,7 +85,7 @@ class Candidates {
   Candidates(const ContactPairs& pairs, const std::vector<LinkShape>& object, const Hand& hand,
              const GraspSamplerOptions& options)
       : hand_(hand), options_(options), judge_(pairs, hand), far_face_(object) {
-    if (pairs.surface) seats_.emplace(*pairs.surface, hand, options);
+    if (pairs.surface) seats_.emplace(*pairs.surface, pairs.hull.get(), hand, options);
     for (std::size_t i = 0; i < pairs.pairs.size(); ++i) add(static_cast<int>(i), pairs.pairs[i]);
   }
 
@@ -98,7 +98,7 @@ class Candidates {
     bool wide = pair.width > hand_.max_opening, held = false;
     if (!wide) {
       const double farthest = std::max(std::abs(options_.standoff), hand_.finger_depth / 2);
-      const auto near = seats_ ? seats_->near(pair, farthest) : std::vector<detail::NearTriangle>();
+      const detail::NearPads near = seats_ ? seats_->near(pair, farthest) : detail::NearPads{};
       const Eigen::Vector3d side = pair.axis.cross(pair.first_approach);
       for (int i = 0; i < options_.approaches; ++i) {
         const double angle = detail::kTwoPi * i / options_.approaches;
@@ -136,7 +136,7 @@ class Candidates {
 
   /// The pair where the pads meet the part, if they do not on its contacts alone.
   std::optional<ContactPair> seat(const ContactPair& pair, const Eigen::Vector3d& approach, double standoff,
-                                  const std::vector<detail::NearTriangle>& near) const {
+                                  const detail::NearPads& near) const {
     if (!seats_) return pair;
     const std::optional<detail::PadSeat> seat = seats_->seat(pair, approach, standoff, near);
     if (!seat) return {};

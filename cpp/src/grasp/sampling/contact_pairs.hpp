@@ -32,7 +32,7 @@ struct ContactPairs {
   Eigen::Vector3d centre_of_mass = Eigen::Vector3d::Zero();  ///< Uniform density.
   std::vector<Eigen::Vector3d> corners;                      ///< Points whose hull holds the object.
   std::optional<JoinedSurface> surface;      ///< None where pads meet the contacts alone, however the hand comes.
-  std::shared_ptr<const TriangleMesh> hull;  ///< Of a solid surface that is not its own; else null.
+  std::shared_ptr<const TriangleMesh> hull;  ///< The hull of a solid surface that is not convex; else null.
 };
 
 /// Analytic pairs of one box, sphere, cylinder or capsule; nothing for other shapes.

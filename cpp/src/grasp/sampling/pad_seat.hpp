@@ -20,13 +20,13 @@ struct PadSeat {
 /// across it, and along its axis.
 struct NearTriangle {
   std::array<Eigen::Vector3d, 3> corners;
-  Eigen::Vector2d centre;  ///< Of its ball, along and across.
-  double radius;           ///< Of its ball [m].
+  Eigen::Vector2d centre;  ///< The middle of its ball, along and across.
+  double radius;           ///< Its ball's [m].
 };
 
 /// What may come under pads at a pair of contacts.
 struct NearPads {
-  std::vector<NearTriangle> surface, hull;  ///< Of the surface and of its hull.
+  std::vector<NearTriangle> surface, hull;  ///< Triangles of the surface and of its hull.
 };
 
 /// The triangles of a mesh, each in a ball.

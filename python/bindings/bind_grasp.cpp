@@ -42,7 +42,7 @@ const BoundedOptions<GraspSamplerOptions>& sampler_options() {
 py::object provenance_dict(const GraspProvenance& provenance) {
   if (const auto* p = std::get_if<ContactPairProvenance>(&provenance)) {
     return py::dict("sampler"_a = "contact_pairs", "pair"_a = p->pair, "approach"_a = p->approach,
-                    "flipped"_a = p->flipped);
+                    "flipped"_a = p->flipped, "tips_flush"_a = p->tips_flush);
   }
   if (const auto* p = std::get_if<PipeProvenance>(&provenance)) {
     return py::dict("sampler"_a = "pipe", "section"_a = p->section, "length"_a = p->length, "angle"_a = p->angle,
@@ -64,6 +64,9 @@ void bind_provenance(py::module_& m) {
       .def_readonly("pair", &C::pair, "Index among the object's contact pairs, those that are too wide included.")
       .def_readonly("approach", &C::approach, "Index among the approach directions around the closing axis.")
       .def_readonly("flipped", &C::flipped, "The hand is turned by half a turn about the approach.")
+      .def_readonly(
+          "tips_flush", &C::tips_flush,
+          "The tips of the pads are flush with the object's far face: where it is thinner than they are long.")
       .def("__repr__", [](const C& p) { return "ContactPairProvenance(pair=" + std::to_string(p.pair) + ")"; });
   py::class_<P>(m, "PipeProvenance",
                 "Provenance of Pipe.grasp and Pipe.sample_grasps: P2's four variables (P2 3.2.3.1).")

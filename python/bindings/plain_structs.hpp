@@ -144,7 +144,7 @@ inline constexpr std::size_t kFields<FingerLengthRange> = 5;
 template <>
 inline constexpr std::size_t kFields<PlacedMesh> = 3;
 template <>
-inline constexpr std::size_t kFields<ContactPairProvenance> = 3;
+inline constexpr std::size_t kFields<ContactPairProvenance> = 4;
 template <>
 inline constexpr std::size_t kFields<Grasp> = 7;
 template <>

@@ -1793,6 +1793,11 @@ class ContactPairProvenance:
         """
         Index among the object's contact pairs, those that are too wide included.
         """
+    @property
+    def tips_flush(self) -> bool:
+        """
+        The tips of the pads are flush with the object's far face: where it is thinner than they are long.
+        """
 class PipeProvenance:
     """
     Provenance of Pipe.grasp and Pipe.sample_grasps: P2's four variables (P2 3.2.3.1).

@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
+#include <variant>
 
 #include "mmgrasp/core/error.hpp"
 
@@ -42,13 +44,24 @@ Eigen::Vector3d approach_in_object(const Grasp& grasp, const Hand& gripper) {
   return grasp.T_object_hand.linear() * gripper.approach;
 }
 
+bool tips_flush(const Grasp& grasp) {
+  return std::get<ContactPairProvenance>(grasp.provenance).tips_flush;
+}
+
+/// Those at the positions that the options ask for.
+std::vector<Grasp> at_positions(std::vector<Grasp> grasps) {
+  grasps.erase(std::remove_if(grasps.begin(), grasps.end(), tips_flush), grasps.end());
+  return grasps;
+}
+
 TEST(SampleGrasps, BoxContactsLieOnOppositeFacesAtTheBoxesSize) {
   const Eigen::Vector3d size(0.03, 0.05, 0.08);
   const Pose T = pose_from_xyz_rpy({0.1, -0.2, 0.3}, {0.4, -0.7, 1.1});
   const Hand gripper = wide_gripper();
-  const auto [grasps, too_wide] = sample_grasps({shape_at(Box{size}, T)}, gripper, all_kept());
+  const SampledGrasps sampled = sample_grasps({shape_at(Box{size}, T)}, gripper, all_kept());
+  const std::vector<Grasp> grasps = at_positions(sampled.grasps);
   ASSERT_EQ(grasps.size(), 3u * 9 * 8 * 2);
-  EXPECT_EQ(too_wide, 0);
+  EXPECT_EQ(sampled.too_wide, 0);
   std::set<int> axes;
   for (const Grasp& grasp : grasps) {
     const Eigen::Vector3d closing = T.linear().transpose() * closing_in_object(grasp, gripper);
@@ -109,10 +122,87 @@ TEST(SampleGrasps, StandoffMovesTheToolFrameBackAlongTheApproach) {
   }
 }
 
+/// How far the tips of the pads reach beyond a convex body's far face along the approach, by the body's reach in a
+/// direction, both about the object's origin.
+template <typename Reach>
+double beyond_far_face(const Grasp& grasp, const Hand& hand, const Reach& reach) {
+  const Eigen::Vector3d approach = approach_in_object(grasp, hand);
+  return approach.dot(grasp.T_object_hand.translation()) + hand.finger_depth / 2 - reach(approach);
+}
+
+TEST(SampleGrasps, TipsAreFlushWithTheFarFaceOfAFlatBox) {
+  Hand gripper = wide_gripper();
+  gripper.finger_depth = 0.04;
+  const SampledGrasps sampled = sample_grasps({shape_at(Box{{0.05, 0.04, 0.016}})}, gripper, all_kept());
+  int from_above = 0;
+  for (const Grasp& grasp : sampled.grasps) {
+    if (!tips_flush(grasp)) continue;
+    if ((approach_in_object(grasp, gripper) + Eigen::Vector3d::UnitZ()).norm() > 1e-9) continue;
+    ++from_above;
+    EXPECT_NEAR(grasp.T_object_hand.translation().z(), 0.02 - 0.008, 1e-12);
+    EXPECT_NEAR(grasp.opening, std::abs(closing_in_object(grasp, gripper).x()) > 0.5 ? 0.05 : 0.04, 1e-12);
+  }
+  EXPECT_EQ(from_above, 2 * 3 * 2);  // two closing axes, three positions across, both flips: none twice
+}
+
+TEST(SampleGrasps, TipsReachNoFartherThanEveryBodyWhereTheyAreFlush) {
+  const Pose T = pose_from_xyz_rpy({0.1, -0.2, 0.3}, {0.4, -0.7, 1.1});
+  const Hand gripper = wide_gripper();
+  const auto expect_flush = [&](const Shape& shape, const auto& reach) {
+    const SampledGrasps sampled = sample_grasps({shape_at(shape, T)}, gripper, all_kept());
+    const auto placed = [&](const Eigen::Vector3d& direction) {
+      return direction.dot(T.translation()) + reach(Eigen::Vector3d(T.linear().transpose() * direction));
+    };
+    int flush = 0;
+    std::set<std::array<long, 12>> places;
+    for (const Grasp& grasp : sampled.grasps) {
+      const double beyond = beyond_far_face(grasp, gripper, placed);
+      if (!tips_flush(grasp)) continue;
+      ++flush;
+      EXPECT_NEAR(beyond, 0, 1e-12);
+      std::array<long, 12> place{};
+      for (int i = 0; i < 12; ++i) place[i] = std::lround(1e6 * grasp.T_object_hand(i % 3, i / 3));
+      EXPECT_TRUE(places.insert(place).second) << "listed twice";
+    }
+    EXPECT_GT(flush, 0);
+    EXPECT_EQ(sampled.tips_flush, flush);
+  };
+  expect_flush(Box{{0.05, 0.04, 0.016}},
+               [](const Eigen::Vector3d& d) { return d.cwiseAbs().dot(Eigen::Vector3d(0.025, 0.02, 0.008)); });
+  expect_flush(Sphere{0.01}, [](const Eigen::Vector3d&) { return 0.01; });
+  expect_flush(Cylinder{0.03, 0.01},
+               [](const Eigen::Vector3d& d) { return 0.03 * d.head<2>().norm() + 0.005 * std::abs(d.z()); });
+  expect_flush(Capsule{0.008, 0.05}, [](const Eigen::Vector3d& d) { return 0.008 + 0.025 * std::abs(d.z()); });
+}
+
+TEST(SampleGrasps, WhereTheTipsStayWithinTheObjectNoneAreMadeFlush) {
+  // The outermost of the positions are flush by themselves.
+  const SampledGrasps thick = sample_grasps({shape_at(Box{{0.05, 0.2, 0.2}})}, wide_gripper(), all_kept());
+  EXPECT_EQ(thick.tips_flush, 0);
+  for (const Grasp& grasp : thick.grasps) EXPECT_FALSE(tips_flush(grasp));
+  // A standoff that keeps the tips inside is enough.
+  GraspSamplerOptions options = all_kept();
+  options.positions = 1;
+  options.standoff = 0.012;
+  EXPECT_EQ(sample_grasps({shape_at(Sphere{0.004})}, wide_gripper(), options).tips_flush, 0);
+  options.standoff = 0.010;
+  EXPECT_GT(sample_grasps({shape_at(Sphere{0.004})}, wide_gripper(), options).tips_flush, 0);
+}
+
+TEST(SampleGrasps, FlushGraspsOfAFlatBoxAreAmongThoseKept) {
+  Hand gripper = wide_gripper();
+  gripper.finger_depth = 0.04;
+  const SampledGrasps sampled = sample_grasps({shape_at(Box{{0.05, 0.04, 0.016}})}, gripper);
+  const auto from_above = std::count_if(sampled.grasps.begin(), sampled.grasps.end(), [&](const Grasp& grasp) {
+    return tips_flush(grasp) && (approach_in_object(grasp, gripper) + Eigen::Vector3d::UnitZ()).norm() < 1e-9;
+  });
+  EXPECT_GE(from_above, 4);  // both closing axes, both flips
+}
+
 TEST(SampleGrasps, CylinderWidthsAreDiameterOrLength) {
   const double radius = 0.025, length = 0.09;
   const Hand gripper = wide_gripper();
-  const auto grasps = sample_grasps({shape_at(Cylinder{radius, length})}, gripper, all_kept()).grasps;
+  const auto grasps = at_positions(sample_grasps({shape_at(Cylinder{radius, length})}, gripper, all_kept()).grasps);
   int across = 0, along = 0;
   for (const Grasp& grasp : grasps) {
     const Eigen::Vector3d closing = closing_in_object(grasp, gripper), middle = grasp.T_object_hand.translation();
@@ -151,8 +241,9 @@ TEST(SampleGrasps, SphereAndCapsuleMatchTheirClosedForms) {
 TEST(SampleGrasps, CountsPairsWiderThanTheOpening) {
   Hand gripper = wide_gripper();
   gripper.max_opening = 0.06;
-  const auto [grasps, too_wide] = sample_grasps({shape_at(Box{{0.05, 0.061, 0.2}})}, gripper, all_kept());
-  EXPECT_EQ(too_wide, 2 * 9);  // nine pad positions on each of two pairs of faces
+  const SampledGrasps sampled = sample_grasps({shape_at(Box{{0.05, 0.061, 0.2}})}, gripper, all_kept());
+  const std::vector<Grasp> grasps = at_positions(sampled.grasps);
+  EXPECT_EQ(sampled.too_wide, 2 * 9);  // nine pad positions on each of two pairs of faces
   EXPECT_EQ(grasps.size(), 9u * 8 * 2);
   for (const Grasp& grasp : grasps) EXPECT_LE(grasp.opening, gripper.max_opening);
   gripper.max_opening = 0.04;

@@ -21,9 +21,10 @@ struct MMGRASP_EXPORT QualityFactor {
 
 /// Provenance of sample_grasps: two opposed contacts and a direction of approach.
 struct MMGRASP_EXPORT ContactPairProvenance {
-  int pair = 0;          ///< Index among the object's contact pairs, those that are too wide included.
-  int approach = 0;      ///< Index among GraspSamplerOptions::approaches.
-  bool flipped = false;  ///< The hand is turned by half a turn about the approach.
+  int pair = 0;             ///< Index among the object's contact pairs, those that are too wide included.
+  int approach = 0;         ///< Index among GraspSamplerOptions::approaches.
+  bool flipped = false;     ///< The hand is turned by half a turn about the approach.
+  bool tips_flush = false;  ///< The tips of the pads are flush with the object's far face.
 };
 
 /// Provenance of sample_pipe_grasps: P2's four variables (3.2.3.1, figure 3.5).
@@ -75,6 +76,7 @@ struct MMGRASP_EXPORT Grasp {
 struct MMGRASP_EXPORT SampledGrasps {
   std::vector<Grasp> grasps;
   int too_wide = 0;  ///< Contact pairs (sample_grasps) or sections of a pipe (sample_pipe_grasps) wider than the hand.
+  int tips_flush = 0;  ///< How many of `grasps` have the tips of the pads flush with the far face (sample_grasps).
 };
 
 }  // namespace mmgrasp

@@ -13,8 +13,10 @@ namespace mmgrasp {
 struct MMGRASP_EXPORT GraspSamplerOptions {
   int approaches = 8;  ///< Approach directions around each closing axis; > 0.
   int positions = 3;   ///< Pad positions along each free direction of a box or cylinder (odd: the middle first); > 0.
-  int mesh_samples = 400;  ///< Surface points tried on a mesh, eight times as many where few pairs fit the hand; > 0.
-  int max_grasps = 200;    ///< Best kept, spread over approach directions; > 0.
+  /// Surface points tried on a mesh, eight times as many where few pairs fit the hand, and on its hull unless it is
+  /// convex; > 0.
+  int mesh_samples = 400;
+  int max_grasps = 200;  ///< Best kept, spread over approach directions; > 0.
   /// Coulomb coefficient; an antipodal pair's normals lie within atan(friction) of its axis; > 0.
   double friction = 0.5;
   double standoff = 0.0;  ///< How far the tool frame stays outside the object's middle along the approach [m].
@@ -34,7 +36,11 @@ struct MMGRASP_EXPORT GraspSamplerOptions {
 ///   solids from outside to outside of their union, open surfaces from wall to wall. There the pads, flat and of
 ///   finger_depth x finger_width, rest on the outermost points under them: that gives opening and middle of the grasp.
 ///   Left out are those at which what they touch is steeper than friction allows, or lies so far apart on the two sides
-///   that the part would turn. What leaves no room for a finger behind a pad counts as under it.
+///   that the part would turn. What leaves no room for a finger behind a pad counts as under it. Crests of a closed
+///   mesh (threads, grooves) hold like the convex hull over them where a pad touches more than one edge can.
+/// - Where the tips of the pads would reach beyond the object's far face along the approach, since it is thinner than
+///   they are long or the contacts are near that face, a second hand stops with them flush with it (`tips_flush`): the
+///   object may lie on something. It goes first among equally good ones; pairs one behind the other give one such hand.
 /// - Pairs wider than max_opening are counted in `too_wide`, those too wide under the pads from everywhere as well. A
 /// part that leaves less than the wanted clearance is kept
 ///   (the clearance shrinks, see Hand::pregrasp_opening) with a lower quality.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -30,21 +31,25 @@ struct ContactPairs {
   std::vector<ContactPair> pairs;  ///< Pairs in the order of sampling, too wide ones included.
   Eigen::Vector3d centre_of_mass = Eigen::Vector3d::Zero();  ///< Uniform density.
   std::vector<Eigen::Vector3d> corners;                      ///< Points whose hull holds the object.
-  std::optional<JoinedSurface> surface;  ///< None where pads meet the contacts alone, however the hand comes.
+  std::optional<JoinedSurface> surface;      ///< None where pads meet the contacts alone, however the hand comes.
+  std::shared_ptr<const TriangleMesh> hull;  ///< The hull of a solid surface that is not convex; else null.
 };
 
 /// Analytic pairs of one box, sphere, cylinder or capsule; nothing for other shapes.
 std::optional<ContactPairs> primitive_pairs(const LinkShape& shape, const Hand& hand,
                                             const GraspSamplerOptions& options);
 
-/// Pairs by rays through the union of all shapes' surfaces; more of them where few are no wider than max_opening [m].
+/// Pairs by rays through the union of all shapes' surfaces, more of them where few are no wider than max_opening [m],
+/// and through its convex hull, on which flat pads stand where the surface is edges (threads, grooves).
 ContactPairs surface_pairs(const std::vector<LinkShape>& object, double max_opening,
                            const GraspSamplerOptions& options);
 
 /// Any unit vector orthogonal to a unit vector; the same for the same input.
 Eigen::Vector3d orthogonal_to(const Eigen::Vector3d& axis);
 
-/// Share of a pad (depth along `approach`, width across) that lies on the face, in [0, 1].
-double pad_overlap(const ContactFace& face, const Eigen::Vector3d& approach, double depth, double width);
+/// Share of a pad (depth along `approach`, width across) that lies on the face, in [0, 1]; the pad's middle stays
+/// `standoff` [m] before the contact.
+double pad_overlap(const ContactFace& face, const Eigen::Vector3d& approach, double standoff, double depth,
+                   double width);
 
 }  // namespace mmgrasp::detail

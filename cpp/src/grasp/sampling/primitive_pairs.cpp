@@ -168,10 +168,11 @@ Eigen::Vector3d orthogonal_to(const Eigen::Vector3d& axis) {
   return (Eigen::Vector3d::Unit(smallest) - axis[smallest] * axis).normalized();
 }
 
-double pad_overlap(const ContactFace& face, const Eigen::Vector3d& approach, double depth, double width) {
+double pad_overlap(const ContactFace& face, const Eigen::Vector3d& approach, double standoff, double depth,
+                   double width) {
   const Eigen::Vector2d along(approach.dot(face.u), approach.dot(face.v));
   const Eigen::Vector2d across(-along.y(), along.x());
-  const Eigen::Vector2d centre(face.offset_u, face.offset_v);
+  const Eigen::Vector2d centre = Eigen::Vector2d(face.offset_u, face.offset_v) - standoff * along;
   std::vector<Eigen::Vector2d> pad;
   for (const auto& [d, w] : {std::pair{1, 1}, std::pair{-1, 1}, std::pair{-1, -1}, std::pair{1, -1}})
     pad.push_back(centre + along * (d * depth / 2) + across * (w * width / 2));

@@ -1,9 +1,12 @@
 #include "mmgrasp/grasp/sample_grasps.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <set>
 
 #include "grasp/sampling/contact_pairs.hpp"
+#include "grasp/sampling/far_face.hpp"
 #include "grasp/sampling/pad_seat.hpp"
 #include "grasp/sampling/spread.hpp"
 #include "mmgrasp/core/detail/interruption.hpp"
@@ -20,6 +23,7 @@ using detail::ContactPairs;
 using detail::SampledGrasp;
 
 constexpr double kMostCandidates = 1e6;
+constexpr double kSamePlace = 1e-9;  // What differs by less is the same [m].
 
 /// Judges grasps of one object. Every part has weight 0.5, so their product orders grasps without ruling any out.
 class Judge {
@@ -29,11 +33,12 @@ class Judge {
       radius_ = std::max(radius_, (corner - pairs.centre_of_mass).norm());
   }
 
-  /// `tool` is the origin of the tool frame in the object's frame.
+  /// The tool frame stays `standoff` before the contacts.
   std::vector<QualityFactor> operator()(const ContactPair& pair, const Eigen::Vector3d& approach,
-                                        const Eigen::Vector3d& tool) const {
+                                        double standoff) const {
     return {half("alignment", pair.alignment), half("centring", centring(pair)),
-            half("support", support(pair, approach)), half("insertion", insertion(approach, tool)),
+            half("support", support(pair, approach, standoff)),
+            half("insertion", insertion(approach, pair.middle - standoff * approach)),
             half("clearance", clearance(pair.width))};
   }
 
@@ -46,8 +51,8 @@ class Judge {
     return radius_ > 0 ? 1 - (arm - arm.dot(pair.axis) * pair.axis).norm() / radius_ : 1;
   }
 
-  double support(const ContactPair& pair, const Eigen::Vector3d& approach) const {
-    return pair.face ? detail::pad_overlap(*pair.face, approach, hand_.finger_depth, hand_.finger_width) : 1;
+  double support(const ContactPair& pair, const Eigen::Vector3d& approach, double standoff) const {
+    return pair.face ? detail::pad_overlap(*pair.face, approach, standoff, hand_.finger_depth, hand_.finger_width) : 1;
   }
 
   /// 1 when nothing of the object stands further back than the pad does; falls with what must fit in front of the palm.
@@ -68,12 +73,19 @@ class Judge {
   double radius_ = 0;
 };
 
+/// How far the tool frame stays before the contacts along the approach.
+struct Standoff {
+  double distance;  // [m]
+  bool tips_flush;  // The tips of the pads are flush with the object's far face then.
+};
+
 /// Turns contact pairs into grasps: each approached from all around, the hand either way.
 class Candidates {
  public:
-  Candidates(const ContactPairs& pairs, const Hand& hand, const GraspSamplerOptions& options)
-      : hand_(hand), options_(options), judge_(pairs, hand) {
-    if (pairs.surface) seats_.emplace(*pairs.surface, hand, options);
+  Candidates(const ContactPairs& pairs, const std::vector<LinkShape>& object, const Hand& hand,
+             const GraspSamplerOptions& options)
+      : hand_(hand), options_(options), judge_(pairs, hand), far_face_(object) {
+    if (pairs.surface) seats_.emplace(*pairs.surface, pairs.hull.get(), hand, options);
     for (std::size_t i = 0; i < pairs.pairs.size(); ++i) add(static_cast<int>(i), pairs.pairs[i]);
   }
 
@@ -85,26 +97,48 @@ class Candidates {
     detail::throw_if_interrupted();
     bool wide = pair.width > hand_.max_opening, held = false;
     if (!wide) {
-      const std::vector<int> near = seats_ ? seats_->near(pair) : std::vector<int>();
+      const double farthest = std::max(std::abs(options_.standoff), hand_.finger_depth / 2);
+      const detail::NearPads near = seats_ ? seats_->near(pair, farthest) : detail::NearPads{};
       const Eigen::Vector3d side = pair.axis.cross(pair.first_approach);
       for (int i = 0; i < options_.approaches; ++i) {
         const double angle = detail::kTwoPi * i / options_.approaches;
         const Eigen::Vector3d approach = (std::cos(angle) * pair.first_approach + std::sin(angle) * side).normalized();
-        const std::optional<ContactPair> seated = seat(pair, approach, near);
-        if (!seated) continue;
-        const bool fits = seated->width <= hand_.max_opening;
-        (fits ? held : wide) = true;
-        if (fits) add_both_hands({index, i, false}, *seated, approach);
+        for (const Standoff& standoff : standoffs(pair, approach)) {
+          const std::optional<ContactPair> seated = seat(pair, approach, standoff.distance, near);
+          if (!seated) continue;
+          const bool fits = seated->width <= hand_.max_opening;
+          (fits ? held : wide) = true;
+          if (fits) add_both_hands({index, i, false, standoff.tips_flush}, *seated, approach, standoff.distance);
+        }
       }
     }
     if (wide && !held) ++too_wide_;
   }
 
+  /// Where the hand stops along an approach: as the options say and, where the tips of the pads would reach beyond the
+  /// object's far face there (it may lie on something), also flush with it, which goes first among equally good ones.
+  std::vector<Standoff> standoffs(const ContactPair& pair, const Eigen::Vector3d& approach) {
+    const double flush = approach.dot(pair.middle) + hand_.finger_depth / 2 - far_face_(approach);
+    std::vector<Standoff> found;
+    if (flush > options_.standoff + kSamePlace && is_new(pair, approach, flush)) found.push_back({flush, true});
+    found.push_back({options_.standoff, false});
+    return found;
+  }
+
+  /// Pairs that lie one behind the other along the approach come to the same place when the tips are flush.
+  bool is_new(const ContactPair& pair, const Eigen::Vector3d& approach, double standoff) {
+    std::array<long long, 9> rounded;
+    Eigen::Matrix<double, 9, 1> numbers;
+    numbers << pair.middle - standoff * approach, approach, pair.axis;
+    for (int i = 0; i < 9; ++i) rounded[i] = std::llround(numbers[i] / kSamePlace);
+    return flush_.insert(rounded).second;
+  }
+
   /// The pair where the pads meet the part, if they do not on its contacts alone.
-  std::optional<ContactPair> seat(const ContactPair& pair, const Eigen::Vector3d& approach,
-                                  const std::vector<int>& near) const {
+  std::optional<ContactPair> seat(const ContactPair& pair, const Eigen::Vector3d& approach, double standoff,
+                                  const detail::NearPads& near) const {
     if (!seats_) return pair;
-    const std::optional<detail::PadSeat> seat = seats_->seat(pair, approach, near);
+    const std::optional<detail::PadSeat> seat = seats_->seat(pair, approach, standoff, near);
     if (!seat) return {};
     ContactPair seated = pair;
     seated.middle = seat->middle;
@@ -114,15 +148,16 @@ class Candidates {
   }
 
   /// The pads are alike, the arm is not: the hand turned by half a turn about the approach is a grasp of its own.
-  void add_both_hands(ContactPairProvenance provenance, const ContactPair& pair, const Eigen::Vector3d& approach) {
+  void add_both_hands(ContactPairProvenance provenance, const ContactPair& pair, const Eigen::Vector3d& approach,
+                      double standoff) {
     for (const bool flipped : {false, true}) {
       const Eigen::Vector3d closing = flipped ? -pair.axis : pair.axis;
       SampledGrasp candidate;
       Grasp& grasp = candidate.grasp;
       grasp.T_object_hand.linear() = detail::align_axes(hand_.approach, hand_.closing, approach, closing);
-      grasp.T_object_hand.translation() = pair.middle - options_.standoff * approach;
+      grasp.T_object_hand.translation() = pair.middle - standoff * approach;
       grasp.opening = pair.width;
-      grasp.set_quality(judge_(pair, approach, grasp.T_object_hand.translation()));
+      grasp.set_quality(judge_(pair, approach, standoff));
       provenance.flipped = flipped;
       grasp.provenance = provenance;
       candidate.bin = 27 * detail::direction_bin(approach) + detail::direction_bin(closing);
@@ -133,10 +168,18 @@ class Candidates {
   const Hand& hand_;
   const GraspSamplerOptions& options_;
   Judge judge_;
+  detail::FarFace far_face_;
   std::optional<detail::PadSeats> seats_;
+  std::set<std::array<long long, 9>> flush_;  // Places and axes of hands whose tips are flush.
   std::vector<SampledGrasp> candidates_;
   int too_wide_ = 0;
 };
+
+int count_flush(const std::vector<Grasp>& grasps) {
+  return static_cast<int>(std::count_if(grasps.begin(), grasps.end(), [](const Grasp& grasp) {
+    return std::get<ContactPairProvenance>(grasp.provenance).tips_flush;
+  }));
+}
 
 }  // namespace
 
@@ -162,8 +205,10 @@ SampledGrasps sample_grasps(const std::vector<LinkShape>& object, const Hand& ha
   if (object.size() == 1) pairs = detail::primitive_pairs(object.front(), hand, options);
   if (!pairs) pairs = detail::surface_pairs(object, hand.max_opening, options);
 
-  const Candidates candidates(*pairs, hand, options);
-  return {detail::keep_spread(candidates.all(), options.max_grasps), candidates.too_wide()};
+  const Candidates candidates(*pairs, object, hand, options);
+  SampledGrasps sampled{detail::keep_spread(candidates.all(), options.max_grasps), candidates.too_wide()};
+  sampled.tips_flush = count_flush(sampled.grasps);
+  return sampled;
 }
 
 }  // namespace mmgrasp

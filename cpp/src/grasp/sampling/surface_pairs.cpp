@@ -14,7 +14,8 @@ namespace {
 
 constexpr int kMoreSamples = 8;  // So many times the samples are drawn at most, of a body that the hand can take at few
 constexpr int kFew = 4;          // places: fewer than one in so many samples.
-constexpr double kSamePlace = 1e-7;  // Hits nearer than this share of the body's size are one.
+constexpr double kAsStraight = 0.02;  // Alignments that differ by less are as good.
+constexpr double kSamePlace = 1e-7;   // Hits nearer than this share of the body's size are one.
 
 /// Hits at which the line leaves the union of solids, when it enters that union at t = 0; none when the start is buried
 /// in another shape, or when a shape is not what it says and entries and exits do not balance.
@@ -78,6 +79,49 @@ void add_pairs_from(const SurfacePoint& start, const Eigen::Vector3d& direction,
   }
 }
 
+/// Draws points of a surface and looks for their opposites: `samples` of them, and up to `most` while few of the pairs
+/// are no wider than max_opening.
+void draw_pairs(const TriangleMesh& mesh, bool solid, double tolerance, double max_opening, int samples, int most,
+                const GraspSamplerOptions& options, std::vector<ContactPair>& pairs) {
+  const RayCaster caster(mesh);
+  const SurfacePoints points(mesh);
+  const double cone = std::atan(options.friction);
+  std::size_t judged = pairs.size();
+  int fitting = 0;
+  for (int i = 0; i < most && (i < samples || fitting < samples / kFew); ++i) {
+    Rng rng(options.seed, static_cast<std::uint64_t>(i));
+    const SurfacePoint start = points.draw(rng);
+    const Eigen::Vector3d inward = -start.normal;
+    // Along the normal the first contact is perfect; tilted lines also find wedges that need friction on both sides.
+    const Eigen::Vector3d direction = i % 2 == 0 ? inward : sample_in_cone(inward, cone, rng);
+    add_pairs_from(start, direction, caster, solid, tolerance, cone, pairs);
+    for (; judged < pairs.size(); ++judged) fitting += pairs[judged].width <= max_opening;
+  }
+}
+
+/// Whether the surface stands at least as straight across the pair's line as the hull's contacts do, outermost.
+bool is_straighter(const RayCaster& surface, const ContactPair& pair, double cone) {
+  const std::vector<RayHit> hits = surface.all_hits({pair.middle, pair.axis, -kInfinity});
+  if (hits.empty()) return true;
+  const double angle = std::max(line_angle(pair.axis, hits.front().normal), line_angle(pair.axis, hits.back().normal));
+  return 1 - angle / cone >= pair.alignment - kAsStraight;
+}
+
+/// Pairs on the hull of a surface, where flat pads may stand on edges of it: its faces are drawn by themselves.
+void draw_hull_pairs(const TriangleMesh& hull, const TriangleMesh& surface, double tolerance, double max_opening,
+                     const GraspSamplerOptions& options, std::vector<ContactPair>& pairs) {
+  std::vector<ContactPair> drawn;
+  draw_pairs(hull, true, tolerance, max_opening, options.mesh_samples, options.mesh_samples, options, drawn);
+  const RayCaster caster(surface);
+  const double cone = std::atan(options.friction);
+  for (const ContactPair& pair : drawn)
+    if (!is_straighter(caster, pair, cone)) pairs.push_back(pair);
+}
+
+bool is_convex(const std::vector<LinkShape>& object) {
+  return object.size() == 1 && shape_mesh(object.front().shape)->convex;
+}
+
 }  // namespace
 
 ContactPairs surface_pairs(const std::vector<LinkShape>& object, double max_opening,
@@ -90,22 +134,13 @@ ContactPairs surface_pairs(const std::vector<LinkShape>& object, double max_open
   for (const Eigen::Vector3d& vertex : surface.mesh.vertices) bounds.extend(vertex);
   for (int i = 0; i < 8; ++i) result.corners.push_back(bounds.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i)));
 
-  const RayCaster caster(surface.mesh);
-  const SurfacePoints points(surface.mesh);
   const double tolerance = kSamePlace * bounds.diagonal().norm();
-  const double cone = std::atan(options.friction);
-  const auto fits = [&](const ContactPair& pair) { return pair.width <= max_opening; };
-  const int most = kMoreSamples * options.mesh_samples;
-  std::size_t judged = 0;
-  int fitting = 0;
-  for (int i = 0; i < most && (i < options.mesh_samples || fitting < options.mesh_samples / kFew); ++i) {
-    Rng rng(options.seed, static_cast<std::uint64_t>(i));
-    const SurfacePoint start = points.draw(rng);
-    const Eigen::Vector3d inward = -start.normal;
-    // Along the normal the first contact is perfect; tilted lines also find wedges that need friction on both sides.
-    const Eigen::Vector3d direction = i % 2 == 0 ? inward : sample_in_cone(inward, cone, rng);
-    add_pairs_from(start, direction, caster, surface.solid, tolerance, cone, result.pairs);
-    for (; judged < result.pairs.size(); ++judged) fitting += fits(result.pairs[judged]);
+  const int samples = options.mesh_samples;
+  draw_pairs(surface.mesh, surface.solid, tolerance, max_opening, samples, kMoreSamples * samples, options,
+             result.pairs);
+  if (surface.solid && !is_convex(object)) {
+    result.hull = convex_hull(surface.mesh.vertices);
+    draw_hull_pairs(*result.hull, surface.mesh, tolerance, max_opening, options, result.pairs);
   }
   result.surface = std::move(surface);
   return result;

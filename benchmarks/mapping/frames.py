@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import NamedTuple
 
@@ -21,3 +22,9 @@ class Frames(NamedTuple):
     def load(cls, path: Path) -> Frames:
         with np.load(path) as content:
             return cls(**{name: content[name] for name in cls._fields})
+
+
+def resident_memory() -> int:
+    """What this process holds of the machine's memory [bytes]."""
+    with open("/proc/self/statm", encoding="ascii") as file:
+        return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")

@@ -1,34 +1,42 @@
-"""The probabilistic map beside Open3D's VoxelBlockGrid, on the same frames in one run.
+"""The probabilistic map beside Open3D's VoxelBlockGrid, on the same frames in one run, and what its cost grows with.
 
-    python benchmarks/mapping/run.py [--frames FOLDER] [--count N] [--voxel 0.002] [--truncation 0.01] [--baselines FOLDER]
+    python benchmarks/mapping/run.py [--frames FOLDER] [--count N] [--voxel 0.002] [--truncation 0.01]
+                                     [--baselines FOLDER] [--write]
 
 Real frames: FOLDER of 16-bit depth images in millimetres with poses (default: tsdf_fusion of the shared data). Rendered
-frames: a box, a sphere and a can on a table, of which the truth is known. Open3D lives in an environment of its own below
-build/, or the one named by --baselines. Prints frames/s, rays/s, points/s, memory and the error of the meshes.
+frames: a box, a sphere and a can on a table, of which the truth is known. Open3D lives in an environment of its own
+below build/, or the one named by --baselines; where it cannot be installed its columns stay empty. Then balls: one, and
+eight of them in volumes of three sizes. --write puts the tables into benchmarks/README.md.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
+import os
+import platform
 import subprocess
 import sys
 import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent), str(HERE.parents[1] / "tests" / "python")]
-from frames import Frames
+from frames import Frames, resident_memory
 from programs import baselines_environment
-from tables import ROOT
+from tables import ROOT, markdown, show
 
 import mmgrasp as mg
 from camera_poses import look_at
+from mmgrasp.frames import open_frames
 
+THREADS = 2
+ROUNDS = 5
 TABLE_SCENE = [
     mg.LinkShape(mg.Box([1.0, 1.0, 0.02]), mg.pose([0, 0, -0.01])),
     mg.LinkShape(mg.Box([0.12, 0.08, 0.10]), mg.pose([0.12, 0.05, 0.05])),
@@ -37,6 +45,7 @@ TABLE_SCENE = [
 ]
 
 
+# --- frames -----------------------------------------------------------------------------------------------------------
 def rendered(count: int) -> Frames:
     """A circle around the table, with the noise of a millimetre at one metre."""
     camera = mg.mapping.PinholeCamera(farthest=3.0)
@@ -47,6 +56,16 @@ def rendered(count: int) -> Frames:
         poses.append(look_at(eye, np.array([0, 0, 0.04])))
         depth.append(mg.mapping.render_depth(TABLE_SCENE, camera, poses[-1], noise=0.001, seed=k + 1).depth)
     return Frames(np.stack(depth), np.stack(poses), np.array([525.0, 525.0, 319.5, 239.5]), np.array([0.1, 3.0]))
+
+
+def recorded(path: Path, count: int) -> Frames:
+    folder = open_frames(path)
+    loaded = [folder.read(frame) for frame in folder.frames[:count]]
+    pinhole = loaded[0].camera.intrinsics
+    depth = np.stack([np.asarray(frame.image.depth, dtype=np.float32) for frame in loaded])
+    depth[depth > 60] = 0
+    poses = np.stack([frame.image.T_world_camera for frame in loaded])
+    return Frames(depth, poses, np.array([pinhole.fx, pinhole.fy, pinhole.cx, pinhole.cy]), np.array([0.2, 5.0]))
 
 
 def distance_to_scene(points: np.ndarray) -> np.ndarray:
@@ -64,62 +83,176 @@ def distance_to_scene(points: np.ndarray) -> np.ndarray:
     return np.asarray(np.abs(np.min([table, part, ball, can_distance], axis=0)))
 
 
-def fused(frames: Frames, voxel: float, truncation: float) -> tuple[mg.ProbabilisticSdf, float]:
-    """The map, and frames per second of the better of two runs."""
+# --- measurements -----------------------------------------------------------------------------------------------------
+def fused(frames: Frames, voxel: float, truncation: float) -> tuple[mg.ProbabilisticSdf, float, int]:
+    """The map, frames per second of the best of three runs, and by how many bytes the process grew in the first."""
     fx, fy, cx, cy = frames.intrinsics
     height, width = frames.depth.shape[1:]
     pinhole = mg.mapping.PinholeCamera(width, height, fx, fy, cx, cy, *frames.reach)
     noise = mg.mapping.DepthNoise(constant=5e-4, quadratic=5e-4)
     camera = mg.mapping.DepthCamera(pinhole, noise)
     images = [mg.mapping.DepthImage(d, pinhole, T) for d, T in zip(frames.depth, frames.poses, strict=True)]
-    best = np.inf
-    for _ in range(2):
+    best, grown = np.inf, 0
+    for k in range(3):
+        before = resident_memory()
         sdf = mg.ProbabilisticSdf(voxel=voxel, truncation=truncation, max_memory=8e9)
         begin = time.perf_counter()
         for image in images:
             sdf.integrate(image, camera)
         best = min(best, time.perf_counter() - begin)
-    return sdf, len(images) / best
+        if k == 0:  # later ones find memory that this one gave back
+            grown = resident_memory() - before
+    return sdf, len(images) / best, grown
 
 
-def rate(call: Callable[[], object], count: int) -> float:
-    """Per second, the best of three."""
-    times = []
-    for _ in range(3):
-        begin = time.perf_counter()
+def rates(call: Callable[[], object], count: int) -> tuple[float, float]:
+    """Per second on the clock, and per second of a core, the best of five each."""
+    wall, processor = [], []
+    for _ in range(ROUNDS):
+        begin, used = time.perf_counter(), time.process_time()
         call()
-        times.append(time.perf_counter() - begin)
-    return count / min(times)
+        wall.append(time.perf_counter() - begin)
+        processor.append(time.process_time() - used)
+    return count / min(wall), count / min(processor)
 
 
-def measure(name: str, frames: Frames, arguments: argparse.Namespace, python: Path, folder: Path) -> None:
-    path, mesh_path = folder / f"{name}.npz", folder / f"{name}_mesh.npz"
+def shown(found: tuple[float, float], hit: float | None = None) -> str:
+    text = f"{found[0] / 1e6:.2f}; {found[1] / 1e6:.2f}"
+    return text if hit is None else f"{text} ({hit:.0%} hit)"
+
+
+def image_rays(frames: Frames, k: int) -> tuple[np.ndarray, np.ndarray]:
+    """Origins and directions through the pixels of frame k, row by row."""
+    fx, fy, cx, cy = frames.intrinsics
+    height, width = frames.depth.shape[1:]
+    v, u = np.mgrid[:height, :width]
+    local = np.column_stack([((u - cx) / fx).ravel(), ((v - cy) / fy).ravel(), np.ones(height * width)])
+    return np.tile(frames.poses[k, :3, 3], (len(local), 1)), local @ frames.poses[k, :3, :3].T
+
+
+def cast(sdf: mg.ProbabilisticSdf, origins: np.ndarray, directions: np.ndarray) -> str:
+    hit = float(sdf.cast_rays(origins, directions).hit.mean())
+    return shown(rates(lambda: sdf.cast_rays(origins, directions, threads=THREADS), len(origins)), hit)
+
+
+def asked(sdf: mg.ProbabilisticSdf, points: np.ndarray) -> str:
+    return shown(rates(lambda: sdf.query(points, threads=THREADS), len(points)))
+
+
+def near_surface(points: np.ndarray, count: int, rng: np.random.Generator) -> np.ndarray:
+    return np.asarray(points[rng.integers(len(points), size=count)] + rng.uniform(-0.003, 0.003, (count, 3)))
+
+
+def open3d(python: Path | None, frames: Frames, arguments: argparse.Namespace, folder: Path) -> dict[str, Any] | None:
+    if python is None:
+        return None
+    path, mesh_path = folder / "frames.npz", folder / "mesh.npz"
     frames.save(path)
-    sdf, ours = fused(frames, arguments.voxel, arguments.truncation)
-    command = [python, HERE / "open3d_baseline.py", "fuse", path, arguments.voxel, arguments.truncation, mesh_path]
+    command = [python, HERE / "open3d_baseline.py", path, arguments.voxel, arguments.truncation, mesh_path]
     done = subprocess.run([str(part) for part in command], check=True, capture_output=True, text=True)
-    theirs = json.loads(done.stdout.splitlines()[-1])
-    print(f"{name}: {len(frames.depth)} frames of {frames.depth.shape[2]} x {frames.depth.shape[1]}")
-    print(f"  mmgrasp {ours:.1f} frames/s, {sdf.blocks} blocks, {sdf.memory / 1e6:.0f} MB")
-    print(
-        f"  Open3D {theirs['frames_per_second']:.1f} frames/s, {theirs['blocks']} blocks, {theirs['memory_mb']:.0f} MB"
-    )
-    points = sdf.points()[0]
-    if name == "rendered":
-        for who, vertices in (("mmgrasp", points), ("Open3D", np.load(mesh_path)["vertices"])):
-            error = distance_to_scene(vertices)
-            print(
-                f"  {who}: mesh error rms {1e3 * np.sqrt(np.mean(error**2)):.3f} mm, 95 % {1e3 * np.quantile(error, 0.95):.3f} mm"
-            )
+    return {**json.loads(done.stdout.splitlines()[-1]), "vertices": np.load(mesh_path)["vertices"]}
+
+
+def mesh_error(points: np.ndarray) -> str:
+    error = distance_to_scene(points)
+    return f"{1e3 * np.sqrt(np.mean(error**2)):.2f}; {1e3 * np.quantile(error, 0.95):.2f}"
+
+
+def compared(name: str, frames: Frames, arguments: argparse.Namespace, python: Path | None) -> list[list[str]]:
+    """Rows of one kind of frames: what, ours, Open3D's."""
+    sdf, ours, grown = fused(frames, arguments.voxel, arguments.truncation)
+    with tempfile.TemporaryDirectory() as folder:
+        theirs = open3d(python, frames, arguments, Path(folder))
     rng = np.random.default_rng(1)
-    near = points[rng.integers(len(points), size=1_000_000)] + rng.uniform(-0.003, 0.003, (1_000_000, 3))
-    print(
-        f"  points/s: {rate(lambda: sdf.query(near), len(near)) / 1e6:.1f} million (near the surface, in random order)"
-    )
+    points = sdf.points()[0]
+    origins, directions = image_rays(frames, 0)
+    order = rng.permutation(len(origins))
     eyes = frames.poses[rng.integers(len(frames.poses), size=200_000), :3, 3]
     towards = points[rng.integers(len(points), size=len(eyes))] - eyes
-    hits = sdf.cast_rays(eyes, towards).hit.mean()
-    print(f"  rays/s: {rate(lambda: sdf.cast_rays(eyes, towards), len(eyes)) / 1e6:.2f} million ({hits:.0%} hit)")
+    near = near_surface(points, 1_000_000, rng)
+
+    def rays_of(found: dict[str, Any]) -> str:
+        return shown(found["rays"][:2], found["rays"][2])
+
+    def other(text: Callable[[dict[str, Any]], str]) -> str:
+        return text(theirs) if theirs else "-"
+
+    rows = [
+        ["frames/s", f"{ours:.1f}", other(lambda o: f"{o['frames_per_second']:.1f}")],
+        ["blocks of 512 voxels", f"{sdf.blocks}", other(lambda o: f"{o['blocks']}")],
+        ["voxels and index (Open3D: voxels) [MB]", f"{sdf.memory / 1e6:.0f}", other(lambda o: f"{o['memory_mb']:.0f}")],
+        ["by which the process grew [MB]", f"{grown / 1e6:.0f}", other(lambda o: f"{o['grown_mb']:.0f}")],
+        ["million rays/s, an image in its order", cast(sdf, origins, directions), other(rays_of)],
+        ["million rays/s, the same shuffled", cast(sdf, origins[order], directions[order]), "-"],
+        [f"million rays/s, {len(frames.poses)} places to random points seen", cast(sdf, eyes, towards), "-"],
+        ["million points/s within 3 mm of the surface, random order", asked(sdf, near), "-"],
+    ]  # fmt: skip
+    if name == "rendered":
+        error = ["error of the mesh, rms; 95 % [mm]", mesh_error(points), other(lambda o: mesh_error(o["vertices"]))]
+        rows.insert(4, error)
+    return [[f"{name}: {row[0]}", *row[1:]] for row in rows]
+
+
+# --- what the cost grows with -----------------------------------------------------------------------------------------
+RADIUS, VIEWS = 0.05, 6
+
+
+def balls(side: int, spacing: float, arguments: argparse.Namespace) -> list[str]:
+    """Row of side^3 balls, `spacing` apart, each seen from six sides by frames that see no other."""
+    pinhole = mg.mapping.PinholeCamera(320, 240, 300.0, 300.0, 159.5, 119.5, 0.1, 0.5)
+    camera = mg.mapping.DepthCamera(pinhole, mg.mapping.DepthNoise(constant=0.001))
+    sdf = mg.ProbabilisticSdf(voxel=arguments.voxel, truncation=arguments.truncation, max_memory=8e9)
+    middles = spacing * np.array(
+        [[x, y, z] for x in range(side) for y in range(side) for z in range(side)], dtype=float
+    )
+    seconds, eyes, towards = 0.0, [], []
+    for k, middle in enumerate(middles):
+        shape = [mg.LinkShape(mg.Sphere(RADIUS), mg.pose(middle))]
+        for j in range(VIEWS):
+            way = np.zeros(3)
+            way[j % 3] = 1 if j < 3 else -1
+            way += [0.01, 0.02, 0.03]
+            eye = middle + 0.3 * way
+            image = mg.mapping.render_depth(shape, pinhole, look_at(eye, middle), noise=0.001, seed=VIEWS * k + j + 1)
+            begin = time.process_time()
+            sdf.integrate(image, camera)
+            seconds += time.process_time() - begin
+            eyes.append(eye)
+            towards.append(middle - eye)
+    points = sdf.points()[0]
+    rng = np.random.default_rng(1)
+    which = rng.integers(len(eyes), size=200_000)
+    aside = np.array(towards)[which] + rng.uniform(-0.02, 0.02, (len(which), 3))
+    near = near_surface(points, 500_000, rng)
+    extent = np.ptp(points, axis=0)
+    surface = len(middles) * 4 * np.pi * RADIUS**2
+    return [
+        f"{len(middles)}", f"{surface:.3f}", f"{np.prod(extent):.3g}", f"{sdf.blocks}", f"{sdf.memory / 1e6:.1f}",
+        f"{1e3 * seconds / (VIEWS * len(middles)):.1f}",
+        f"{rates(lambda: sdf.cast_rays(np.array(eyes)[which], aside, threads=1), len(which))[1] / 1e6:.2f}",
+        f"{rates(lambda: sdf.query(near, threads=1), len(near))[1] / 1e6:.1f}",
+    ]  # fmt: skip
+
+
+def scaling(arguments: argparse.Namespace) -> str:
+    head = ["balls", "surface [m^2]", "box around it [m^3]", "blocks", "memory [MB]", "a frame [ms of a core]"]
+    head += ["million rays/s of a core", "million points/s of a core"]
+    return markdown(head, [balls(1, 0.0, arguments), *(balls(2, apart, arguments) for apart in (0.6, 6.0, 60.0))])
+
+
+# --- the whole --------------------------------------------------------------------------------------------------------
+def environment(folder: Path) -> Path | None:
+    """Python with Open3D; None, and said, where it cannot be had."""
+    try:
+        return baselines_environment(folder.absolute(), HERE / "baselines.txt")
+    except (subprocess.CalledProcessError, OSError) as error:
+        print(f"Open3D cannot be installed ({error}): its columns stay empty", file=sys.stderr)
+        return None
+
+
+def processor() -> str:
+    lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+    return next((line.partition(":")[2].strip() for line in lines if line.startswith("model name")), platform.machine())
 
 
 def main() -> None:
@@ -130,17 +263,24 @@ def main() -> None:
     parser.add_argument("--voxel", type=float, default=0.002)
     parser.add_argument("--truncation", type=float, default=0.010)
     parser.add_argument("--baselines", type=Path, default=ROOT / "build/baselines-mapping")
+    parser.add_argument("--write", action="store_true", help="into benchmarks/README.md")
     arguments = parser.parse_args()
-    python = baselines_environment(arguments.baselines.absolute(), HERE / "baselines.txt")
-    with tempfile.TemporaryDirectory() as folder:
-        measure("rendered", rendered(arguments.count), arguments, python, Path(folder))
-        if arguments.frames.exists():
-            path = Path(folder) / "real.npz"
-            command = [python, HERE / "open3d_baseline.py", "read", arguments.frames, path]
-            subprocess.run([str(part) for part in command], check=True)
-            real = Frames.load(path)
-            cut = Frames(real.depth[: arguments.count], real.poses[: arguments.count], real.intrinsics, real.reach)
-            measure("real", cut, arguments, python, Path(folder))
+    python = environment(arguments.baselines)
+    rows = compared("rendered", rendered(arguments.count), arguments, python)
+    if arguments.frames.exists():
+        rows += compared("real", recorded(arguments.frames, arguments.count), arguments, python)
+    load = os.getloadavg()[0]
+    text = [
+        f"{arguments.count} frames of each kind; {processor()}, {len(os.sched_getaffinity(0))} cores, load {load:.1f}.",
+        f"Rays and points: on {THREADS} threads by the clock; for each second of a core.",
+        "",
+        markdown(["", "mmgrasp", "Open3D `VoxelBlockGrid`"], rows),
+        "",
+        f"Balls of {RADIUS} m, each seen from {VIEWS} sides with 320 x 240 pixels:",
+        "",
+        scaling(arguments),
+    ]
+    show("mapping", "\n".join(text), arguments.write)
 
 
 if __name__ == "__main__":

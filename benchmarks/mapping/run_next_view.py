@@ -1,11 +1,13 @@
 """Chosen views beside fixed ones: how probable is the best grasp of a part after as many frames?
 
-    python benchmarks/mapping/run_next_view.py [--seeds 1 2 3] [--chosen 5] [--threads 1]
+    python benchmarks/mapping/run_next_view.py [--seeds 1 2 3] [--chosen 5] [--threads 1] [--write]
 
-Five parts on a table, a camera with noise of 0.8 mm + 6 mm z^2, its poses off by 1 mm and 3 mrad along and about each axis. The
-first view is the same; then the camera goes on round a fixed list (from above and the side, all around), twice as long, or
-where `next_view` sends it. Each map is asked for its best grasp with 600 samples. Prints the mean over parts and seeds after every
-frame, the chosen beside the fixed after twice as many, and that difference part by part with its 95 % interval.
+Five parts on a table, a camera with noise of 0.8 mm + 6 mm z^2, its poses off by 1 mm and 3 mrad along and about each
+axis. The first view is the same; then the camera goes on round a fixed list (from above and the side, all around), twice
+as long, or where `next_view` sends it. Each map is asked for its best grasp with 600 samples. Prints the mean over parts
+and seeds after every frame, the chosen beside the fixed after twice as many, and that difference part by part with its
+95 % interval; last what the best of the poses that were compared for the second view would have given, which nobody
+knows before. --write puts the table into benchmarks/README.md.
 """
 
 from __future__ import annotations
@@ -16,7 +18,10 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests" / "python"))
+BENCHMARKS = Path(__file__).resolve().parents[1]
+sys.path[:0] = [str(BENCHMARKS), str(BENCHMARKS.parent / "tests" / "python")]
+
+from tables import markdown, show
 
 import mmgrasp as mg
 from camera_poses import look_at
@@ -64,15 +69,21 @@ def best(sdf: mg.ProbabilisticSdf, seed: int, threads: int) -> float:
     return found.grasps[0].quality if found.grasps else 0.0
 
 
-def measure(name: str, seed: int, chosen: int, threads: int) -> tuple[list[float], list[float]]:
-    """Probability of the best grasp after each of 2 * `chosen` fixed frames, and after each of `chosen` chosen ones."""
+def new_map(threads: int) -> mg.ProbabilisticSdf:
+    return mg.ProbabilisticSdf(voxel=0.0025, truncation=0.0125, threads=threads)
+
+
+def measure(name: str, seed: int, chosen: int, threads: int) -> tuple[list[float], list[float], float]:
+    """Probability of the best grasp after each of 2 * `chosen` fixed frames, after each of `chosen` chosen ones, and
+    after the first and the best second one.
+    """
     scene = [mg.LinkShape(mg.collision.Plane([0, 0, 1], 0.0)), *PARTS[name]]
-    maps = [mg.ProbabilisticSdf(voxel=0.0025, truncation=0.0125, threads=threads) for _ in range(2)]
+    maps = [new_map(threads) for _ in range(2)]
     rngs = [np.random.default_rng([seed, list(PARTS).index(name)]) for _ in range(2)]
-    out: tuple[list[float], list[float]] = ([], [])
+    fixed, own, second = [], [], 0.0
     for k in range(2 * chosen):
         look(maps[0], scene, fixed_view(k + 7 * seed), rngs[0])
-        out[0].append(best(maps[0], seed, threads))
+        fixed.append(best(maps[0], seed, threads))
     for k in range(chosen):
         T = fixed_view(7 * seed)
         if k > 0:
@@ -80,9 +91,19 @@ def measure(name: str, seed: int, chosen: int, threads: int) -> tuple[list[float
                 maps[1], HAND, CAMERA, table=0.0, pose_covariance=COVARIANCE, seed=seed, threads=threads
             )
             T = view.candidates[0].T_world_camera
+            if k == 1:
+                second = max(after_two(scene, name, seed, c.T_world_camera, threads) for c in view.candidates)
         look(maps[1], scene, T, rngs[1])
-        out[1].append(best(maps[1], seed, threads))
-    return out
+        own.append(best(maps[1], seed, threads))
+    return fixed, own, second
+
+
+def after_two(scene: list[mg.LinkShape], name: str, seed: int, T: np.ndarray, threads: int) -> float:
+    """Probability of the best grasp after the first view and one from T."""
+    sdf, rng = new_map(threads), np.random.default_rng([seed, list(PARTS).index(name)])
+    look(sdf, scene, fixed_view(7 * seed), rng)
+    look(sdf, scene, T, rng)
+    return best(sdf, seed, threads)
 
 
 def main() -> None:
@@ -90,23 +111,27 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, nargs="+", default=[1, 2, 3])
     parser.add_argument("--chosen", type=int, default=5)
     parser.add_argument("--threads", type=int, default=1)
+    parser.add_argument("--write", action="store_true", help="into benchmarks/README.md")
     arguments = parser.parse_args()
-    fixed, chosen = [], []
+    fixed, chosen, second = [], [], []
     for name in PARTS:
         for seed in arguments.seeds:
-            rows = measure(name, seed, arguments.chosen, arguments.threads)
-            fixed.append(rows[0])
-            chosen.append(rows[1])
-            texts = [" ".join(f"{p:.2f}" for p in row) for row in rows]
-            print(f"{name}, seed {seed}: fixed {texts[0]} | chosen {texts[1]}", flush=True)
-    print(f"| frames n | fixed, n | fixed, 2 n | chosen, n | chosen n less fixed 2 n (95 %, {len(fixed)} runs) |")
-    print("| --- | --- | --- | --- | --- |")
+            own = measure(name, seed, arguments.chosen, arguments.threads)
+            fixed.append(own[0])
+            chosen.append(own[1])
+            second.append(own[2])
+            texts = [" ".join(f"{p:.2f}" for p in row) for row in own[:2]]
+            print(f"{name}, seed {seed}: fixed {texts[0]} | chosen {texts[1]} | best second {own[2]:.2f}", flush=True)
     a, b = np.array(fixed), np.array(chosen)
+    rows = []
     for n in range(1, arguments.chosen + 1):
         apart = b[:, n - 1] - a[:, 2 * n - 1]
         margin = 1.96 * apart.std(ddof=1) / np.sqrt(len(apart))
         means = [a[:, n - 1].mean(), a[:, 2 * n - 1].mean(), b[:, n - 1].mean()]
-        print(f"| {n} | " + " | ".join(f"{m:.2f}" for m in means) + f" | {apart.mean():+.2f} +- {margin:.2f} |")
+        afterwards = f"{np.mean(second):.2f}" if n == 2 else ""
+        rows.append([f"{n}", *(f"{m:.2f}" for m in means), f"{apart.mean():+.2f} +- {margin:.2f}", afterwards])
+    head = ["frames n", "fixed, n", "fixed, 2 n", "chosen, n", f"chosen n less fixed 2 n (95 %, {len(fixed)} runs)"]
+    show("next view", markdown([*head, "best pose of those compared"], rows), arguments.write)
 
 
 if __name__ == "__main__":

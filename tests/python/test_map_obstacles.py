@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import mmgrasp as mg
+from camera_poses import look_at
 from conftest import REPOSITORY
 
 INTRINSICS = mg.mapping.PinholeCamera(width=160, height=120, fx=200.0, fy=200.0, cx=79.5, cy=59.5)
@@ -74,6 +76,44 @@ def test_a_map_is_an_obstacle(sdf: mg.ProbabilisticSdf) -> None:
     assert free(wider, 0, 0, TOP) and not free(wider, 0.5, 0, TOP)
     wider.remove("scan")
     assert "scan" not in wider
+
+
+def test_distances_edges_ik_and_planners_take_a_map() -> None:
+    """A box on a table seen from above and all around; what they say is held against the two true boxes."""
+    sdf = mg.ProbabilisticSdf(voxel=0.002)
+    eyes = [[0.25 * np.cos(a), 0.25 * np.sin(a), 0.2] for a in np.arange(8) * np.pi / 4]
+    for eye in eyes:
+        T = look_at(np.array(eye), np.array([0.0, 0.0, 0.02]))
+        sdf.integrate(mg.mapping.render_depth(SCENE, INTRINSICS, T), CAMERA)
+    sdf.integrate(frame(EYES[0]), CAMERA)
+    seen, truth = mg.World(), mg.World()
+    seen.add_sdf("scan", sdf, sigmas=2.0)
+    for k, part in enumerate(SCENE):
+        assert isinstance(part.shape, mg.Box)
+        truth.add_box(f"part {k}", part.shape.size, pose=part.pose)
+    by_map, by_truth = (mg.CollisionChecker(ROBOT, world, group=ARM) for world in (seen, truth))
+    rng = np.random.default_rng(5)
+    margin = 2 * 0.003 + 0.006  # of two standard deviations, which are large at rims, and three cells
+    for q in rng.uniform([-0.08, -0.08, 0.06], [0.08, 0.08, 0.12], (40, 3)):
+        found, true = by_map.distance(q).value, by_truth.distance(q).value
+        assert true - margin <= found <= true + 1e-6
+        assert by_map.is_free(q)
+    drawn = rng.uniform([-0.06, -0.06, 0.02], [0.06, 0.06, 0.09], (400, 2, 3))
+    outside = [by_truth.are_free(ends).all() for ends in drawn]  # what is within is seen from nowhere
+    blocked = [not by_truth.edge_is_free(a, b, joint_step=0.001) for a, b in drawn[outside]]
+    assert 40 < sum(blocked) < sum(outside) - 40
+    assert not any(by_map.edge_is_free(a, b, joint_step=0.001) for a, b in drawn[outside][blocked])
+    reached = ARM.ik(mg.pose([0.01, 0.0, TOP + 0.012]), world=seen)
+    assert reached.outcome == mg.Outcome.solved and by_map.is_free(reached.q)
+    inside = ARM.ik(mg.pose([0.01, 0.0, TOP - 0.001]), world=seen)
+    assert inside.outcome != mg.Outcome.solved and inside.rejections.scene > 0
+    start, goal = [-0.06, 0.0, 0.02], [0.06, 0.005, 0.02]
+    assert not by_map.edge_is_free(start, goal, joint_step=0.001)
+    plan = mg.plan_motion(ROBOT, ARM, seen, start=start, goal=goal, joint_step=0.001, seed=1, time_limit=60.0)
+    assert plan.outcome == mg.Outcome.solved
+    path = np.array(plan.path)
+    for a, b in itertools.pairwise(path):
+        assert by_truth.are_free(a + np.linspace(0, 1, 200)[:, None] * (b - a)).all()
 
 
 @pytest.mark.slow

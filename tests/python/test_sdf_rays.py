@@ -104,6 +104,20 @@ def test_a_ray_has_the_same_answer_alone_and_among_others(sdf: mg.ProbabilisticS
         np.testing.assert_array_equal(np.concatenate(alone), getattr(many, name)[:40])
 
 
+def test_large_batches_are_put_in_order_and_answered_in_theirs(sdf: mg.ProbabilisticSdf) -> None:
+    """Rays from within the map, beside it and past it, many along an axis; in pieces and all at once."""
+    rng = np.random.default_rng(11)
+    origins, points = rng.uniform(-0.6, 0.6, (50_000, 3)), sdf.points()[0]
+    directions = points[rng.integers(len(points), size=len(origins))] - origins
+    directions[::3] = rng.normal(size=directions[::3].shape)
+    directions[::7] = [0.0, 0.0, -1.0]
+    many = sdf.cast_rays(origins, directions, threads=2)
+    assert 10_000 < many.hit.sum() < 45_000
+    pieces = [sdf.cast_rays(origins[i : i + 5000], directions[i : i + 5000]) for i in range(0, len(origins), 5000)]
+    for name in ("hit", "distance", "point", "normal", "sigma"):
+        np.testing.assert_array_equal(np.concatenate([getattr(piece, name) for piece in pieces]), getattr(many, name))
+
+
 def test_normals_are_central_differences_of_the_mean(sdf: mg.ProbabilisticSdf) -> None:
     rng = np.random.default_rng(9)
     origins = np.column_stack([rng.uniform(-0.2, 0.2, (2000, 2)), np.full(2000, 0.4)])

@@ -1,6 +1,6 @@
 """Which sources a stored result was made from: a hash goes with it, and the page names results that are older than theirs.
 
-Chapter 4 of P1 so far. What the library beneath it (collisions, kinematics) gives is held by tests of its own and does not count.
+Chapter 4 of P1 and that of P3 so far. What the library beneath it (collisions, kinematics) gives is held by tests of its own and does not count.
 """
 
 from __future__ import annotations
@@ -18,6 +18,28 @@ _TRAJOPT = (
     "python/mmgrasp/reproduce/nearest_state.py",
 )  # fmt: skip
 _SIM = (*_TRAJOPT, "cpp/src/control", "cpp/src/grasp/push", "python/mmgrasp/sim", "python/mmgrasp/reproduce/physics.py")
+_LINE = (
+    "cpp/src/grasp/success/line_grasp.cpp",
+    "cpp/include/mmgrasp/grasp/line_grasp.hpp",
+    "python/mmgrasp/reproduce/grasp_success.py",
+)
+_MAPS = (
+    "cpp/src/mapping/sdf", "cpp/src/mapping/render_depth.cpp", "cpp/include/mmgrasp/mapping/depth_camera.hpp",
+    "cpp/include/mmgrasp/mapping/probabilistic_sdf.hpp",
+)  # fmt: skip
+_SYNTHESIS = (
+    *_MAPS, "cpp/src/grasp/success", "cpp/src/grasp/synthesis", "cpp/include/mmgrasp/grasp/contact_patch.hpp",
+    "cpp/include/mmgrasp/grasp/success_model.hpp", "cpp/include/mmgrasp/grasp/surface_draws.hpp",
+    "cpp/include/mmgrasp/grasp/synthesize_grasps.hpp", "python/mmgrasp/reproduce/grasp_success.py",
+)  # fmt: skip
+_SURFACES = (*_SYNTHESIS, "python/mmgrasp/reproduce/uncertain_surfaces.py")
+_TRIALS = (
+    *_SYNTHESIS, "cpp/src/mapping/height_map.cpp", "cpp/src/grasp/graspability",
+    "cpp/include/mmgrasp/grasp/graspability.hpp",
+    "python/mmgrasp/sim/model.py", "python/mmgrasp/sim/pick_trial.py", "python/mmgrasp/sim/scene.py",
+    "python/mmgrasp/reproduce/grasping_trials.py", "python/mmgrasp/reproduce/height_features.py",
+    "python/mmgrasp/reproduce/unknown_objects.py",
+)  # fmt: skip
 SOURCES: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(
         ("p1-figure-4.3", "p1-figure-4.4", "p1-figure-4.5", "p1-figure-4.6", "p1-figure-4.13"),
@@ -27,6 +49,10 @@ SOURCES: dict[str, tuple[str, ...]] = {
     "p1-figure-4.10": _SIM,
     "p1-figure-4.12": _SIM,
     "p1-table-3.5-drive-by": (*_TRAJOPT, "cpp/src/task/part_supply", "python/mmgrasp/reproduce/three_ways.py"),
+    "p3-figure-4.6": _LINE,
+    **dict.fromkeys(("p3-figure-4.15", "p3-figure-4.18", "p3-figure-4.19"), _SURFACES),
+    "p3-figure-4.21": _SYNTHESIS,
+    **dict.fromkeys(("p3-table-4.1", "p3-table-4.1-rough", "p3-table-4.2"), _TRIALS),
 }
 """Folders and files of the repository, by result."""
 

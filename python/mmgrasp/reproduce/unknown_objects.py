@@ -9,6 +9,7 @@ import numpy as np
 
 from .. import _core
 from .._core import Box, Capsule, Cylinder, Grasp, LinkShape, Sphere
+from . import height_features
 from .grasp_success import looking_at
 
 FRICTION = 0.5  # of fingers on objects, in physics and in the model
@@ -20,7 +21,7 @@ POSE_ERROR = (0.001, 0.003)  # of each frame along and about each axis [m, rad]
 # The side walls of low parts are seen under a slant alone from cameras that look down on a table; this noise does not grow with it.
 MAX_INCIDENCE = 1.3
 VIEWS = 10
-WAYS = ("ours", "mean only", "one view", "from above")
+WAYS = ("ours", "mean only", "one view", "from above", "height features")
 DRAWS = 200
 SAMPLES = 600
 CAUTIOUS = (2.0, 1.0, 0.0)  # standard deviations of the surface kept free around the hand, tried in turn
@@ -96,11 +97,13 @@ def attempt(name: str, number: int, seed: int, rough: bool = False) -> dict[str,
         placement_weight=1 / 9,
         centring_weight=2 / 9,
     )
+    above = _above(scene, np.array(place), rng)
     lists = {
         "ours": list(zip(rated.grasps, (r.pretouch_opening for r in rated.ratings), strict=True)),
         "mean only": _found(mean_only),
         "one view": _found(search(single)),
-        "from above": _from_above(scene, np.array(place), hand, rng),
+        "from above": _from_above(*above, hand),
+        "height features": _by_height_features(above[1], hand),
     }
     from ..sim.model import Physics
 
@@ -178,15 +181,31 @@ def _found(found: _core.GraspSynthesis) -> list[tuple[Grasp, float]]:
     return list(zip(found.grasps, (r.pretouch_opening for r in found.ratings), strict=True))
 
 
-def _from_above(
-    scene: list[LinkShape], target: np.ndarray, hand: _core.Hand, rng: np.random.Generator
-) -> list[tuple[Grasp, float]]:
-    """P1 3.7.2's graspability in one frame of the better camera, from above."""
+def _above(
+    scene: list[LinkShape], target: np.ndarray, rng: np.random.Generator
+) -> tuple[_core.DepthImage, _core.HeightMap]:
+    """One frame of the better camera from above, and its heights over the table."""
     image = _seen(scene, _core.look_down(target + [0, 0, 0.45]), "hand", rng)["image"]
     at = _core.pose([target[0], target[1], target[2]])
-    heights = _core.make_height_map(image, at, [0.34, 0.26], resolution=0.002)
+    return image, _core.make_height_map(image, at, [0.34, 0.26], resolution=0.002)
+
+
+def _from_above(image: _core.DepthImage, heights: _core.HeightMap, hand: _core.Hand) -> list[tuple[Grasp, float]]:
+    """P1 3.7.2's graspability."""
     found = _core.evaluate_graspability(heights, hand, image=image, threads=1)
     return [(grasp, hand.pregrasp_opening(grasp.opening)) for grasp in found.grasps]
+
+
+@functools.cache
+def _machine() -> height_features.Machine:
+    return height_features.trained(_hand(), FRICTION)
+
+
+def _by_height_features(heights: _core.HeightMap, hand: _core.Hand) -> list[tuple[Grasp, float]]:
+    """P3's baseline, with a machine of our own; the hand comes wide open."""
+    grasps = height_features.choose(heights, hand, _machine())
+    T = np.array(heights.T_world_map)
+    return [(Grasp(T @ g.T_object_hand, g.opening, quality=g.quality), hand.max_opening) for g in grasps]
 
 
 def _try_first(

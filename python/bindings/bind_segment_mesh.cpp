@@ -196,8 +196,8 @@ void bind_segment_mesh(py::module_& m) {
               const auto read = detail::load_mesh(file, Eigen::Vector3d::Constant(metres), found);
               return std::make_tuple(read, found, detail::count_bodies(*read));
             });
-        return std::tuple<MeshShape, bool, int, int, int>(MeshShape{mesh}, faults.inside_out, faults.turned_triangles,
-                                                          faults.repeated_triangles, bodies);
+        return std::make_tuple(MeshShape{mesh}, faults.inside_out, faults.turned_triangles, faults.repeated_triangles,
+                               faults.enclosed_bodies, bodies);
       },
       "path"_a, "scale"_a = 1.0);
   m.def("_mesh_segmentation_option_table", [] { return option_table(mesh_segmentation_fields()); });

@@ -86,7 +86,7 @@ PROFILES: dict[str, tuple[list[tuple[float, float]], list[float]]] = {
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("name", "refined"), [("L", 1), ("L", 32), ("U", 1), ("U", 32), ("T", 32)])
+@pytest.mark.parametrize(("name", "refined"), [("L", 1), ("L", 32), ("U", 1), ("U", 32), ("T", 1), ("T", 32)])
 def test_widths_of_profiles_are_those_that_grasps_have(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str, refined: int
 ) -> None:
@@ -165,6 +165,49 @@ def test_faulty_meshes_are_mended_and_told(tmp_path: Path, capsys: pytest.Captur
     (segment,) = found["segments"]
     assert sorted(w["width"] for w in segment["widths"]) == pytest.approx([0.01, 0.02, 0.03], abs=1e-8)
     assert [w["covered"] for w in segment["widths"]] == pytest.approx([1, 1, 1])
+
+
+def write_box_in_box(path: Path, outwards: tuple[bool, bool]) -> Path:
+    """A box of 30 x 20 x 10 mm with one of half the size in its middle; each looks outwards or inwards."""
+    mesh = mg.LinkShape(mg.Box([0.03, 0.02, 0.01])).surface()
+    corners = np.array(mesh.vertices[mesh.triangles])
+    shells = [size * (corners if out else corners[:, ::-1]) for size, out in zip((1.0, 0.5), outwards, strict=True)]
+    rows = ["solid part"]
+    for c in np.concatenate(shells):
+        points = "".join(f" vertex {p[0]:.9g} {p[1]:.9g} {p[2]:.9g}" for p in c)
+        rows.append(f"facet normal 0 0 0 outer loop{points} endloop endfacet")
+    path.write_text("\n".join([*rows, "endsolid part"]) + "\n")
+    return path
+
+
+NESTED = {
+    (True, False): (0.875, []),
+    (False, False): (0.875, ["12 faces of 24 looked another way than the rest of the mesh: they were turned"]),
+    (False, True): (0.875, ["the mesh was inside out: its faces were turned"]),
+    (True, True): (
+        1.0,
+        [
+            "1 body lies wholly within the material of another and would be weighed twice: left out; "
+            "the walls of a void must look into it"
+        ],
+    ),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("outwards", NESTED)
+def test_a_box_in_a_box_is_a_void_or_left_out(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], outwards: tuple[bool, bool]
+) -> None:
+    """The walls around a void are no widths: no finger gets there."""
+    share, notes = NESTED[outwards]
+    part = write_box_in_box(tmp_path / "part.stl", outwards)
+    assert mg.Mesh.load(part).volume == pytest.approx(share * 0.03 * 0.02 * 0.01, rel=1e-6)
+    assert main(["segment", str(part), "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["closed"] and found["notes"] == notes
+    widths = [w["width"] for s in found["segments"] for w in s["widths"]]
+    assert sorted(widths) == pytest.approx([0.01, 0.02, 0.03], abs=1e-8)
 
 
 @pytest.mark.slow

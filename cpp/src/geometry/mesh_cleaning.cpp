@@ -103,9 +103,10 @@ Triangles without_repeats(const Triangles& triangles) {
 
 /// Whether the triangles bound a solid; then they are oriented. Two coincident sheets are closed edge by edge but bound
 /// nothing.
-bool close(const std::vector<Eigen::Vector3d>& vertices, Triangles& triangles) {
+bool close(const std::vector<Eigen::Vector3d>& vertices, Triangles& triangles, EnclosedBodies& enclosed) {
   Triangles oriented = triangles;
-  if (!orient_closed(vertices, oriented)) return false;
+  EnclosedBodies left_out;
+  if (!orient_closed(vertices, oriented, &left_out)) return false;
   Eigen::AlignedBox3d bounds;
   for (const Eigen::Vector3d& v : vertices) bounds.extend(v);
   double six = 0;  // volumes
@@ -115,13 +116,15 @@ bool close(const std::vector<Eigen::Vector3d>& vertices, Triangles& triangles) {
   }
   if (!(six > 6 * kNoVolume * std::pow(bounds.diagonal().norm(), 3))) return false;
   triangles = std::move(oriented);
+  enclosed = left_out;
   return true;
 }
 
 /// Whether the triangles bound a solid once each is there only once; then they are what is left.
-bool close_without_repeats(const std::vector<Eigen::Vector3d>& vertices, Triangles& triangles) {
+bool close_without_repeats(const std::vector<Eigen::Vector3d>& vertices, Triangles& triangles,
+                           EnclosedBodies& enclosed) {
   Triangles once = without_repeats(triangles);
-  if (once.size() == triangles.size() || !close(vertices, once)) return false;
+  if (once.size() == triangles.size() || !close(vertices, once, enclosed)) return false;
   triangles = std::move(once);
   return true;
 }
@@ -172,9 +175,9 @@ int count_turned(const Triangles& file, const Triangles& triangles) {
 
 /// Makes the best of triangles that are no solid as they are: copies go, and faces that look another way than their
 /// neighbours are turned, which may make them one after all.
-bool mend_open(const std::vector<Eigen::Vector3d>& vertices, Triangles& triangles) {
+bool mend_open(const std::vector<Eigen::Vector3d>& vertices, Triangles& triangles, EnclosedBodies& enclosed) {
   drop_copies(triangles);
-  return orient_open(vertices, triangles) && close(vertices, triangles);
+  return orient_open(vertices, triangles) && close(vertices, triangles, enclosed);
 }
 
 }  // namespace
@@ -198,14 +201,17 @@ std::shared_ptr<const TriangleMesh> clean_mesh(RawMesh raw, const std::string& s
   // A file may hold each face twice, from either side. Faces that two solids share are no repeats: both stay where one
   // of them would leave the solids open.
   const Triangles file = faults == nullptr ? Triangles{} : triangles;
-  mesh->closed = close_without_repeats(mesh->vertices, triangles) || close(mesh->vertices, triangles) ||
-                 mend_open(mesh->vertices, triangles);
-  if (faults != nullptr) faults->repeated_triangles = static_cast<int>(file.size() - triangles.size());
+  EnclosedBodies enclosed;
+  mesh->closed = close_without_repeats(mesh->vertices, triangles, enclosed) ||
+                 close(mesh->vertices, triangles, enclosed) || mend_open(mesh->vertices, triangles, enclosed);
+  if (faults != nullptr)
+    faults->repeated_triangles = static_cast<int>(file.size() - triangles.size()) - enclosed.triangles;
   triangles.erase(
       std::remove_if(triangles.begin(), triangles.end(), [&](const auto& t) { return has_no_area(mesh->vertices, t); }),
       triangles.end());
-  if (!mesh->closed) mesh->closed = close(mesh->vertices, triangles);
+  if (!mesh->closed) mesh->closed = close(mesh->vertices, triangles, enclosed);
   if (faults != nullptr) {
+    faults->enclosed_bodies = enclosed.count;
     faults->turned_triangles = count_turned(file, triangles);
     faults->inside_out = mesh->closed ? faults->turned_triangles == static_cast<int>(triangles.size())
                                       : faces_inwards(mesh->vertices, triangles);

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "geometry/nested_shells.hpp"
+
 namespace mmgrasp::detail {
 
 namespace {
@@ -137,42 +139,23 @@ Neighbours neighbours_over_plain_edges(const std::vector<std::array<int, 3>>& tr
   return out;
 }
 
-// A shell that lies in no other bounds material, so it must look outwards. Nested shells keep their sense relative to
-// that: inwards a cavity, outwards a solid inside a solid (which changes nothing).
-void orient_outwards(const std::vector<Eigen::Vector3d>& vertices, std::vector<std::array<int, 3>>& triangles,
-                     const Shells& shells) {
-  std::vector<double> volume(shells.count, 0);
-  std::vector<Eigen::AlignedBox3d> bounds(shells.count);
-  std::vector<int> first(shells.count, -1);
+/// Turns shells, and leaves out bodies in the material of others, so that the mesh bounds its solid.
+EnclosedBodies settle_shells(const std::vector<Eigen::Vector3d>& vertices, std::vector<std::array<int, 3>>& triangles,
+                             const Shells& shells) {
+  const std::vector<ShellFate> fates = shell_fates(vertices, triangles, shells);
+  EnclosedBodies out;
+  out.count = static_cast<int>(std::count(fates.begin(), fates.end(), ShellFate::leave_out));
+  std::vector<std::array<int, 3>> kept;
+  kept.reserve(triangles.size());
   for (std::size_t t = 0; t < triangles.size(); ++t) {
-    const int s = shells.shell_of_triangle[t];
-    volume[s] += six_volumes(vertices, triangles[t], vertices[0]);
-    for (const int corner : triangles[t]) bounds[s].extend(vertices[corner]);
-    if (first[s] < 0) first[s] = triangles[t][0];
+    const ShellFate fate = fates[shells.shell_of_triangle[t]];
+    if (fate == ShellFate::leave_out) continue;
+    kept.push_back(triangles[t]);
+    if (fate == ShellFate::turn) std::swap(kept.back()[1], kept.back()[2]);
   }
-  const bool all_reversed = std::accumulate(volume.begin(), volume.end(), 0.0) < 0;
-  std::vector<bool> flip(shells.count, all_reversed);
-  for (int s = 0; s < shells.count; ++s) {
-    if ((volume[s] < 0) == all_reversed) continue;
-    bool nested = false;
-    throw_if_interrupted();
-    for (int o = 0; o < shells.count && !nested; ++o) {
-      if (o == s || !bounds[o].contains(bounds[s])) continue;
-      throw_if_interrupted();
-      int winding = 0;
-      for (std::size_t t = 0; t < triangles.size(); ++t) {
-        if (shells.shell_of_triangle[t] != o) continue;
-        const Eigen::Vector3d& p = vertices[first[s]];
-        winding +=
-            ray_crossing(vertices[triangles[t][0]] - p, vertices[triangles[t][1]] - p, vertices[triangles[t][2]] - p);
-      }
-      nested = winding != 0;
-    }
-    if (!nested) flip[s] = volume[s] < 0;
-  }
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    if (flip[shells.shell_of_triangle[t]]) std::swap(triangles[t][1], triangles[t][2]);
-  }
+  out.triangles = static_cast<int>(triangles.size() - kept.size());
+  triangles = std::move(kept);
+  return out;
 }
 
 // Every neighbour bends backwards: measured as height over the larger triangle, which slivers do not spoil.
@@ -224,13 +207,15 @@ int ray_crossing(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen
   return height > 0 ? (p ? 1 : -1) : 0;
 }
 
-bool orient_closed(const std::vector<Eigen::Vector3d>& vertices, std::vector<std::array<int, 3>>& triangles) {
+bool orient_closed(const std::vector<Eigen::Vector3d>& vertices, std::vector<std::array<int, 3>>& triangles,
+                   EnclosedBodies* enclosed) {
   Neighbours neighbours;
   if (triangles.size() < 4 || !find_neighbours(triangles, neighbours)) return false;
   Shells shells;
   std::vector<std::array<int, 3>> oriented = triangles;
   if (!make_consistent(oriented, neighbours, shells)) return false;
-  orient_outwards(vertices, oriented, shells);
+  const EnclosedBodies left_out = settle_shells(vertices, oriented, shells);
+  if (enclosed != nullptr) *enclosed = left_out;
   triangles = std::move(oriented);
   return true;
 }

@@ -15,6 +15,7 @@ namespace mmgrasp::detail {
 struct MeshFaults {
   int repeated_triangles = 0;  ///< Stored twice: one of each was left out.
   int turned_triangles = 0;    ///< They looked inwards, or another way than their neighbours, and were turned.
+  int enclosed_bodies = 0;     ///< Wholly within the material of others: left out.
   bool inside_out = false;     ///< All faces looked inwards; those of an open mesh do so still.
 };
 

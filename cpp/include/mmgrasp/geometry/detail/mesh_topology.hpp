@@ -10,9 +10,16 @@ struct Shells {
   int count = 0;
 };
 
-/// Orients the triangles of a mesh without boundary consistently and outwards (cavities inwards). False, with the
-/// triangles untouched, when an edge is not shared by pairs of triangles or the surface is one-sided.
-bool orient_closed(const std::vector<Eigen::Vector3d>& vertices, std::vector<std::array<int, 3>>& triangles);
+/// Shells that lie wholly within the material of others and change nothing there.
+struct EnclosedBodies {
+  int count = 0, triangles = 0;
+};
+
+/// Orients the triangles of a mesh without boundary consistently and outwards (voids inwards), and leaves out what lies
+/// wholly in material: geometry/nested_shells says which shell is what. False, with the triangles untouched, when an
+/// edge is not shared by pairs of triangles or the surface is one-sided.
+bool orient_closed(const std::vector<Eigen::Vector3d>& vertices, std::vector<std::array<int, 3>>& triangles,
+                   EnclosedBodies* enclosed = nullptr);
 
 /// Turns the triangles of an open mesh that look another way than their neighbours over edges of two triangles: each
 /// shell then looks away from its middle or, where it encloses nothing, as most of its area did. Shells at one with

@@ -27,6 +27,8 @@ constexpr double kRootBend = 0.35;
 constexpr double kLeastTurns = 2;
 /// How well the edges come to lie at one angle when the helix is unwound: 1 when all do, near 0 when they lie anywhere.
 constexpr double kInPhase = 0.3;
+/// Windings slower than this share of the best one are another one, and as good when the edges are as long by this one.
+constexpr double kSlower = 0.8, kAsLong = 0.9;
 /// Edges this far from the common angle belong to the root [rad].
 constexpr double kPhase = 0.8;
 /// Along a pitch edges in phase go around by this share of a turn at least.
@@ -37,9 +39,13 @@ constexpr double kFinest = 0.02, kCoarsest = 1.5;
 constexpr double kLookedAt = 50;
 /// Edges of a chain may differ in radius by this share of the pitch (standard deviation).
 constexpr double kRadius = 0.15;
+/// Radii that differ by this share are one, whatever the pitch: which edges of rings count must not hang on rounding.
+constexpr double kSameRadius = 1e-3;
 /// Edges that differ more in direction from the helix are left out of its fit: the sine of the angle.
 constexpr double kDirection = 0.35;
 constexpr int kFits = 4;
+/// Edges on either side of a face run alike: the cosine between them.
+constexpr double kAlike = 0.94;
 /// Longest chains tried.
 constexpr std::size_t kMostChains = 12;
 
@@ -127,7 +133,7 @@ std::vector<int> edges_along(const FaceGraph& graph, const std::vector<int>& all
     sum += weight;
     if (2 * sum >= length) break;
   }
-  const double reach = kRadius * 2 * kPi * std::abs(helix.pitch_per_radian);
+  const double reach = std::max(kRadius * kTwoPi * std::abs(helix.pitch_per_radian), kSameRadius * median);
   std::vector<int> out;
   InterruptionPoll poll;
   for (const int k : all) {
@@ -142,54 +148,97 @@ std::vector<int> edges_along(const FaceGraph& graph, const std::vector<int>& all
   return out;
 }
 
-/// The pitch at which the edges, unwound, come to lie at one angle, and those edges. Nothing where they do not: edges
-/// of rings are spread evenly over the turn whatever the pitch, and so are edges that noise makes.
-std::optional<std::vector<int>> edges_in_phase(const FaceGraph& graph, const std::vector<int>& edges, Helix& helix) {
-  const Vector3d side = helix.axis.unitOrthogonal(), across = helix.axis.cross(side);
+/// Edges around the axis of a helix, and their mean radius by length.
+struct EdgesAround {
   std::vector<HelixTurn> turns;
-  double length = 0, radius = 0;
-  HelixSpan heights;
+  double radius = 0;
+};
+
+EdgesAround edges_around(const FaceGraph& graph, const std::vector<int>& edges, const Helix& helix) {
+  const Vector3d side = helix.axis.unitOrthogonal(), across = helix.axis.cross(side);
+  EdgesAround out;
+  double length = 0;
   for (const int k : edges) {
     const FaceBorder& b = graph.borders[k];
     const HelixPlace at = place_at(helix, 0.5 * (graph.vertices[b.vertices[0]] + graph.vertices[b.vertices[1]]));
-    turns.push_back({std::atan2(at.outward.dot(across), at.outward.dot(side)), at.height, b.length, k});
+    out.turns.push_back({std::atan2(at.outward.dot(across), at.outward.dot(side)), at.height, b.length, k});
+    out.radius += b.length * at.radius;
     length += b.length;
-    radius += b.length * at.radius;
-    heights.add(at.height);
   }
-  if (length <= 0) return std::nullopt;
-  radius /= length;
+  if (length > 0) out.radius /= length;
+  return out;
+}
+
+/// A winding [rad/m], and how long the edges are together as arrows once it is taken off them.
+struct Unwinding {
+  double winding, length;
+};
+
+/// The longest for a winding of either sense from `least` to `most`.
+Unwinding best_unwinding(const std::vector<HelixTurn>& turns, double least, double most, double step) {
+  Unwinding out{longest_unwound(turns, least, most, step), 0};
+  out.length = std::abs(unwound(turns, out.winding));
+  for (double part = step / 2; part > 1e-4 * step; part /= 2) {
+    for (const double tried : {out.winding - part, out.winding + part}) {
+      const double found = std::abs(unwound(turns, tried));
+      if (found > out.length) out = {tried, found};
+    }
+  }
+  return out;
+}
+
+/// The winding at which edges, unwound, come to lie at one angle [rad/m]. None where they do not: edges of rings are
+/// spread evenly over the turn whatever the winding, and so are edges that noise makes.
+std::optional<double> common_winding(const EdgesAround& edges) {
+  HelixSpan heights, looked_at;
+  for (const HelixTurn& t : edges.turns) heights.add(t.height);
   // The steps grow with the height looked at: without an end where the edges lie on the axis itself, as those of a bore
   // may with noise.
   const double middle = (heights.low + heights.high) / 2;
   std::vector<HelixTurn> near;
-  HelixSpan looked_at;
-  length = 0;
-  for (const HelixTurn& t : turns) {
-    if (std::abs(t.height - middle) > kLookedAt * radius) continue;
+  double length = 0;
+  for (const HelixTurn& t : edges.turns) {
+    if (std::abs(t.height - middle) > kLookedAt * edges.radius) continue;
     near.push_back(t);
     length += t.length;
     looked_at.add(t.height);
   }
   const double span = looked_at.high - looked_at.low;
-  if (near.empty() || !(radius > 0) || !(span > kFinest * radius)) return std::nullopt;
-  const double most = 2 * kPi / (kFinest * radius), least = 2 * kPi / (kCoarsest * radius), step = 1 / span;
-  double best = longest_unwound(near, least, most, step), coherent = std::abs(unwound(near, best));
-  for (double part = step / 2; part > 1e-4 * step; part /= 2) {
-    for (const double tried : {best - part, best + part}) {
-      const double found = std::abs(unwound(near, tried));
-      if (found <= coherent) continue;
-      coherent = found;
-      best = tried;
-    }
+  if (near.empty() || !(edges.radius > 0) || !(span > kFinest * edges.radius)) return std::nullopt;
+  const double most = kTwoPi / (kFinest * edges.radius), least = kTwoPi / (kCoarsest * edges.radius), step = 1 / span;
+  Unwinding best = best_unwinding(near, least, most, step);
+  // Edges on a grid around the axis lie at one angle for faster windings, too: their heights are multiples of the
+  // grid's.
+  for (double below = kSlower * std::abs(best.winding); below > least; below = kSlower * std::abs(best.winding)) {
+    const Unwinding slower = best_unwinding(near, least, below, step);
+    if (slower.length < kAsLong * best.length) break;
+    best = slower;
   }
-  if (coherent < kInPhase * length) return std::nullopt;
-  helix.pitch_per_radian = 1 / best;
-  const double phase = std::arg(unwound(turns, best));
+  if (best.length < kInPhase * length) return std::nullopt;
+  return best.winding;
+}
+
+/// The edges that lie at one angle when they are unwound by their common winding, which the helix takes over.
+std::vector<int> edges_in_phase(const FaceGraph& graph, const std::vector<int>& edges, Helix& helix) {
+  const EdgesAround around = edges_around(graph, edges, helix);
+  const std::optional<double> winding = common_winding(around);
+  if (!winding) return {};
+  helix.pitch_per_radian = 1 / *winding;
+  const double phase = std::arg(unwound(around.turns, *winding));
   std::vector<int> out;
-  for (const HelixTurn& t : turns) {
-    if (std::abs(shortest_turn(t.angle - best * t.height - phase)) < kPhase) out.push_back(t.edge);
+  for (const HelixTurn& t : around.turns) {
+    if (std::abs(shortest_turn(t.angle - *winding * t.height - phase)) < kPhase) out.push_back(t.edge);
   }
+  return out;
+}
+
+/// A helix along edges: its axis by where they run, its pitch by where they are, for edges of a grid around the axis
+/// run along the grid's rings. Where they are at no winding (a ring) it is the pitch by which they run.
+std::optional<Helix> helix_along(const FaceGraph& graph, const std::vector<int>& edges) {
+  std::optional<Helix> out = fit_helix(graph, edges);
+  if (!out) return out;
+  if (const std::optional<double> winding = common_winding(edges_around(graph, edges, *out)))
+    out->pitch_per_radian = 1 / *winding;
   return out;
 }
 
@@ -213,7 +262,7 @@ std::vector<int> edges_of_one_thread(const FaceGraph& graph, const std::vector<i
   });
   std::vector<double> up_to{0};
   for (const RootEdge& e : sorted) up_to.push_back(up_to.back() + e.turned);
-  const double pitch = 2 * kPi * std::abs(helix.pitch_per_radian);
+  const double pitch = kTwoPi * std::abs(helix.pitch_per_radian);
   const auto first_from = [&](double height) {
     const auto at = std::lower_bound(sorted.begin(), sorted.end(), height,
                                      [](const RootEdge& e, double h) { return e.height < h; });
@@ -257,42 +306,64 @@ bool is_thread_root(const FaceGraph& graph, const std::vector<int>& edges, const
   if (length <= 0) return false;
   mean /= length;
   radius = mean;
-  const double pitch = 2 * kPi * std::abs(helix.pitch_per_radian);
+  const double pitch = kTwoPi * std::abs(helix.pitch_per_radian);
   const double spread = std::sqrt(std::max(0.0, square / length - mean * mean));
   return turned > 2 * kPi * kLeastTurns && spread < kRadius * pitch && heights.high - heights.low > kLeastTurns * pitch;
 }
 
-/// Chains of edges that share vertices, bend inwards and go straight on: several starts make several chains.
-std::vector<std::vector<int>> root_chains(const FaceGraph& graph) {
-  std::map<int, std::vector<int>> at_vertex;
+/// Edges that bend inwards, by vertex.
+using RootsAt = std::map<int, std::vector<int>>;
+
+RootsAt roots_at(const FaceGraph& graph) {
+  RootsAt out;
   for (std::size_t k = 0; k < graph.borders.size(); ++k) {
     if (graph.borders[k].bend > -kRootBend) continue;
-    for (const int v : graph.borders[k].vertices) at_vertex[v].push_back(static_cast<int>(k));
+    for (const int v : graph.borders[k].vertices) out[v].push_back(static_cast<int>(k));
   }
+  return out;
+}
+
+/// Edges that bend inwards and go on from one: straight on from its ends, or beside it, alike, across a face: on a grid
+/// around the axis the root steps from ring to ring.
+std::vector<int> roots_beside(const FaceGraph& graph, const RootsAt& roots, int edge) {
+  const FaceBorder& from = graph.borders[edge];
+  const auto away = [&](int k, int vertex) -> Vector3d {
+    const FaceBorder& b = graph.borders[k];
+    const int other = b.vertices[0] == vertex ? b.vertices[1] : b.vertices[0];
+    return (graph.vertices[other] - graph.vertices[vertex]).normalized();
+  };
+  std::vector<int> out;
+  for (const int v : from.vertices)
+    for (const int next : roots.at(v))
+      if (away(edge, v).dot(away(next, v)) < -0.5) out.push_back(next);
+  for (const int face : {from.first, from.second}) {
+    for (const int v : graph.faces[face]) {
+      const auto found = roots.find(v);
+      if (v == from.vertices[0] || v == from.vertices[1] || found == roots.end()) continue;
+      for (const int next : found->second)
+        if (std::abs(away(edge, from.vertices[0]).dot(away(next, v))) > kAlike) out.push_back(next);
+    }
+  }
+  return out;
+}
+
+/// Chains of edges that bend inwards and lead on from one another: several starts make several chains.
+std::vector<std::vector<int>> root_chains(const FaceGraph& graph) {
+  const RootsAt roots = roots_at(graph);
   std::vector<char> taken(graph.borders.size(), 0);
   std::vector<std::vector<int>> chains;
-  const auto leads_on = [&](int from, int to, int vertex) {
-    const auto away = [&](int k) {
-      const FaceBorder& b = graph.borders[k];
-      const int other = b.vertices[0] == vertex ? b.vertices[1] : b.vertices[0];
-      return Vector3d((graph.vertices[other] - graph.vertices[vertex]).normalized());
-    };
-    return away(from).dot(away(to)) < -0.5;
-  };
   InterruptionPoll poll;
-  for (const auto& [vertex, edges] : at_vertex) {
+  for (const auto& [vertex, edges] : roots) {
     for (const int begin : edges) {
-      poll();
       if (taken[begin]) continue;
       std::vector<int> chain{begin};
       taken[begin] = 1;
       for (std::size_t i = 0; i < chain.size(); ++i) {
-        for (const int v : graph.borders[chain[i]].vertices) {
-          for (const int next : at_vertex.at(v)) {
-            if (taken[next] || !leads_on(chain[i], next, v)) continue;
-            taken[next] = 1;
-            chain.push_back(next);
-          }
+        poll();
+        for (const int next : roots_beside(graph, roots, chain[i])) {
+          if (taken[next]) continue;
+          taken[next] = 1;
+          chain.push_back(next);
         }
       }
       if (chain.size() >= 12) chains.push_back(std::move(chain));
@@ -322,17 +393,15 @@ std::vector<ScrewThread> find_threads(const TriangleMesh& mesh) {
     const auto on_known = [&](int k) { return taken[graph.borders[k].first] || taken[graph.borders[k].second]; };
     const auto known = std::count_if(chain.begin(), chain.end(), on_known);
     if (2 * known > static_cast<std::ptrdiff_t>(chain.size())) continue;  // another start or piece of the same thread
-    std::optional<Helix> helix = fit_helix(graph, chain);
+    std::optional<Helix> helix = helix_along(graph, chain);
     std::vector<int> along = chain;
     for (int fit = 0; fit < kFits && helix; ++fit) {
       along = edges_along(graph, roots, along, *helix);
-      helix = fit_helix(graph, along);
+      helix = helix_along(graph, along);
     }
     if (!helix) continue;
     refine_axis(graph, along, *helix);
-    const std::optional<std::vector<int>> in_phase = edges_in_phase(graph, along, *helix);
-    if (!in_phase) continue;
-    const std::vector<int> turns = edges_of_one_thread(graph, *in_phase, *helix);
+    const std::vector<int> turns = edges_of_one_thread(graph, edges_in_phase(graph, along, *helix), *helix);
     if (turns.empty()) continue;
     refine_axis(graph, turns, *helix);
     HelixSpan heights;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/segmentation/axis_frame.hpp"
 #include "mmgrasp/core/detail/interruption.hpp"
 
 namespace mmgrasp::detail {
@@ -122,7 +123,7 @@ std::optional<ScrewThread> thread_around(const FaceGraph& graph, const Helix& he
   out.crest_radius = radii->external ? radii->high : radii->low;
   if (std::abs(out.crest_radius - out.root_radius) < 0.1 * pitch) return std::nullopt;
   out.length = span.high - span.low;
-  out.T_mesh_thread.linear() = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), helix.axis).toRotationMatrix();
+  out.T_mesh_thread.linear() = frame_along(helix.axis);
   out.T_mesh_thread.translation() = helix.point + 0.5 * (span.low + span.high) * helix.axis;
   return out;
 }

@@ -44,10 +44,15 @@ double longest_edge(const TriangleMesh& mesh, double diagonal, const MeshSegment
   return std::max(std::sqrt(4 * area / (std::sqrt(3.0) * options.faces)), 0.5 * options.min_size * diagonal);
 }
 
-/// Regions of the cut faces; each step reads what the one before found.
-std::vector<int> find_regions(const FaceGraph& graph, const std::vector<int>& clusters,
-                              const std::vector<char>& on_bolt, double diagonal,
-                              const MeshSegmentationOptions& options) {
+/// Regions of the cut faces, and which of those are no inner walls.
+struct FoundRegions {
+  std::vector<int> labels;
+  std::vector<char> outer;
+};
+
+/// Each step reads what the one before found.
+FoundRegions find_regions(const FaceGraph& graph, const std::vector<int>& clusters, const std::vector<char>& on_bolt,
+                          double diagonal, const MeshSegmentationOptions& options) {
   const double narrowest = options.min_size * diagonal;
   const int threads = options.diameter.threads;
   const std::vector<double> bends = detail::inward_bends(graph, narrowest, threads);
@@ -68,7 +73,7 @@ std::vector<int> find_regions(const FaceGraph& graph, const std::vector<int>& cl
   detail::label_inner_walls(graph, walls, count, labels);
   detail::dissolve_islands(graph, narrowest * narrowest, labels);
   detail::join_regions(graph, outer, narrowest, options.convexity, labels);
-  return labels;
+  return {std::move(labels), std::move(outer)};
 }
 
 /// The label that most of each face's pieces have, by area; and the mean of the pieces' diameters.
@@ -98,6 +103,22 @@ void gather_pieces(const FaceGraph& graph, const std::vector<int>& labels, const
     if (most != shares.end()) out.labels[f] = most->first;
     if (area > 0) out.diameters[f] = sum / area;
   }
+}
+
+/// Joins the regions that whole faces have once more: where faces are much longer than their pieces, one that reaches
+/// over several regions is given to one of them, and what is left of the others may be no bodies of their own.
+void join_whole_faces(const TriangleMesh& mesh, const std::vector<Vector3d>& known_normals, const FaceGraph& pieces,
+                      const std::vector<char>& outer_pieces, double narrowest, double convexity,
+                      std::vector<int>& labels) {
+  FaceGraph graph;
+  graph.vertices = mesh.vertices;
+  graph.faces = mesh.triangles;
+  graph.parents.resize(graph.faces.size());
+  std::iota(graph.parents.begin(), graph.parents.end(), 0);
+  graph.measure(known_normals);
+  std::vector<char> outer(graph.faces.size(), 0);
+  for (int f = 0; f < pieces.size(); ++f) outer[pieces.parents[f]] |= outer_pieces[f];
+  detail::join_regions(graph, outer, narrowest, convexity, labels);
 }
 
 double median_by_area(std::vector<std::pair<double, double>> values) {
@@ -194,7 +215,8 @@ MeshSegmentation segment_mesh(const TriangleMesh& mesh, const MeshSegmentationOp
     for (const ScrewThread& thread : out.threads) detail::smooth_thread(thread, smooth);
   }
   const std::size_t most = std::max<std::size_t>(2 * options.faces, mesh.triangles.size());
-  const FaceGraph graph = detail::refined_faces(smooth, longest, most, detail::smoothed_normals(smooth, out.threads));
+  const std::vector<Vector3d> thread_normals = detail::smoothed_normals(smooth, out.threads);
+  const FaceGraph graph = detail::refined_faces(smooth, longest, most, thread_normals);
   const std::vector<double> diameters = shape_diameters(graph.mesh(), options.diameter, monitor);
   if (monitor.stopped()) return stopped();
   monitor.report("clusters", 0);
@@ -207,10 +229,13 @@ MeshSegmentation segment_mesh(const TriangleMesh& mesh, const MeshSegmentationOp
   for (const ScrewThread& thread : out.threads) {
     for (const int f : thread.faces) on_bolt[f] = detail::is_external(thread);
   }
-  std::vector<int> labels = find_regions(graph, clusters.labels, on_bolt, diagonal, options);
+  FoundRegions regions = find_regions(graph, clusters.labels, on_bolt, diagonal, options);
   if (monitor.stopped()) return stopped();
-  for (int& label : labels) label = std::max(label, 0);
-  gather_pieces(graph, labels, diameters, mesh.triangles.size(), out);
+  for (int& label : regions.labels) label = std::max(label, 0);
+  gather_pieces(graph, regions.labels, diameters, mesh.triangles.size(), out);
+  if (graph.faces.size() > smooth.triangles.size())
+    join_whole_faces(smooth, thread_normals, graph, regions.outer, options.min_size * diagonal, options.convexity,
+                     out.labels);
   list_segments(mesh, diagonal, out);
   return out;
 }

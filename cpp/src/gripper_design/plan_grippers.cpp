@@ -88,6 +88,11 @@ int segment_called(const std::string& name, const std::string& part, const std::
   return static_cast<int>(at - names.begin());
 }
 
+/// Whether meshes hold the same numbers: parts of one file are read once each.
+bool is_same_mesh(const TriangleMesh& a, const TriangleMesh& b) {
+  return &a == &b || (a.closed == b.closed && a.vertices == b.vertices && a.triangles == b.triangles);
+}
+
 /// The operations, with open meshes that are inside out turned outwards: pads look for outward faces.
 class OutwardOperations {
  public:
@@ -149,24 +154,28 @@ class Planning {
     std::vector<const PlacedMesh*> moved;
     for (const AssemblyOperation& o : operations_)
       for (const PlacedMesh& part : o.active) moved.push_back(&part);
-    std::map<const TriangleMesh*, const SegmentedPart*> known;
+    std::vector<std::pair<const TriangleMesh*, const SegmentedPart*>> known;
     for (std::size_t i = 0; i < moved.size() && !monitor_.stopped(); ++i) {
       monitor_.report("segments", static_cast<double>(i) / moved.size());
       SegmentedPart& out = result_.parts[moved[i]->name];
-      const auto [place, is_new] = known.emplace(moved[i]->mesh.get(), &out);
-      if (!is_new) {
-        out = *place->second;
+      const TriangleMesh& mesh = *moved[i]->mesh;
+      const auto alike =
+          std::find_if(known.begin(), known.end(), [&](const auto& k) { return is_same_mesh(*k.first, mesh); });
+      if (alike != known.end()) {
+        out = *alike->second;
+        out.segmentation.turned = outward_.turned(&mesh);
         continue;
       }
+      known.emplace_back(&mesh, &out);
       Monitor silent;
       silent.stop = monitor_.stop;
       MeshSegmentationOptions segmentation;
       segmentation.diameter.threads = options_.threads;
-      out.segmentation = segment_mesh(*moved[i]->mesh, segmentation, silent);
-      out.segmentation.turned = outward_.turned(moved[i]->mesh.get());
+      out.segmentation = segment_mesh(mesh, segmentation, silent);
+      out.segmentation.turned = outward_.turned(&mesh);
       if (monitor_.stopped()) return;
       const MeshSegmentation& cut = out.segmentation;
-      out.primitives = fit_primitives(*moved[i]->mesh, cut.labels, cut.threads, silent);
+      out.primitives = fit_primitives(mesh, cut.labels, cut.threads, silent);
     }
   }
 

@@ -45,12 +45,13 @@ struct MMGRASP_EXPORT FittedPrimitive {
 /// ours). Cylinders, cones and spheres are found by RANSAC (PCL, Schnabel, Wahl and Klein 2007's criteria: distance and
 /// normal) and refined by least squares over the corners of the faces, which lie on the true surface where chords do
 /// not. A cylinder is as long as its outward wall: bores, which may run on, do not count. Round walls that face inwards
-/// (bores) have no width of their own. The widths of a box are those of the pairs of facets by which jaw_grasps() holds
-/// it (visit_opposite_facets(); facets lie opposite each other over at least `min_contact` [m], > 0). `labels`: the
-/// segment of each face, as in MeshSegmentation. Throws InvalidInput when there is not one label >= 0 a face, or for
-/// threads of other meshes. Nothing when the monitor stops it. A number below the largest label that no face has is an
-/// empty segment: a box of no size, without widths. `threads`: those found by segment_mesh(), which count as the
-/// cylinder through their crests.
+/// (bores) have no width of their own. Where nothing round lies on the surface, the hull's corners are asked, too:
+/// grooves, knurls and flutes have the width of their outline. The widths of a box are those of the pairs of facets by
+/// which jaw_grasps() holds it and which its usual fingers reach from outside (visit_opposite_facets(); facets lie
+/// opposite each other over at least `min_contact` [m], > 0). `labels`: the segment of each face, as in
+/// MeshSegmentation. Throws InvalidInput when there is not one label >= 0 a face, or for threads of other meshes.
+/// Nothing when the monitor stops it. A number below the largest label that no face has is an empty segment: a box of
+/// no size, without widths. `threads`: those found by segment_mesh(), which count as the cylinder through their crests.
 MMGRASP_EXPORT std::vector<FittedPrimitive> fit_primitives(const TriangleMesh& mesh, const std::vector<int>& labels,
                                                            const std::vector<ScrewThread>& threads = {},
                                                            const Monitor& monitor = {},

@@ -9,6 +9,11 @@
 
 namespace mmgrasp {
 
+/// Fingers of a gripper whose own are not known: jaw_grasps() makes grasps for them, and widths are listed for them.
+struct UsualFingers {
+  double width = 0.015, thickness = 0.008;  ///< Across the approach and along the closing axis [m], > 0.
+};
+
 /// Which facets of a segment two parallel jaws can close on.
 struct MMGRASP_EXPORT OppositeFacetsOptions {
   double facet_angle = 0.1;      ///< Faces of one facet bend no more than this from its largest one [rad]; in (0, 0.5].

@@ -23,7 +23,8 @@ struct MMGRASP_EXPORT AssemblyGraspOptions {
           .min_contact;       ///< Length along the approach by which a pad must overlap the segment [m], > 0.
   double pad_length = 0.02;   ///< Length of a pad along the approach [m], >= min_contact.
   double max_opening = 0.25;  ///< Wider segments are left out [m], > 0.
-  double finger_width = 0.015, finger_thickness = 0.008, clearance = 0.002;  ///< See AssemblyGrasp [m].
+  double finger_width = UsualFingers{}.width, finger_thickness = UsualFingers{}.thickness,
+         clearance = 0.002;    ///< See AssemblyGrasp [m].
   double tip_clearance = 0;    ///< Tips end this short of the far end of what they hold, as far as min_contact
                                ///< lets them [m], >= 0.
   double palm_margin = 0.005;  ///< The palm reaches beyond the open fingers by this [m], >= 0.

@@ -24,6 +24,11 @@ constexpr double kSmooth = 0.766;
 /// Faces this close to parallel to a box' face, and this close to it as a share of the segment's size, lie on it.
 constexpr double kParallel = 0.99, kOnBox = 0.02;
 constexpr int kDirections = 64;
+/// Round surfaces off by less are as good as their outlines, as a share of the segment's size.
+constexpr double kExact = 1e-5;
+/// Corners of a grooved surface's hull lie closer to its outline than this share of what the surface is off: noise puts
+/// the outer ones off by a quarter of what it puts the surface off.
+constexpr double kSharper = 0.1;
 
 /// The direction that most of the area faces, to both sides, of those across `axis` (zero: any). Zero when there is
 /// none.
@@ -92,7 +97,7 @@ FittedPrimitive box_along(const SegmentSurface& s, const Eigen::Matrix3d& axes) 
 
 namespace detail {
 
-SegmentSurface segment_surface(const TriangleMesh& mesh, const std::vector<int>& faces) {
+SegmentSurface segment_surface(const TriangleMesh& mesh, const std::vector<int>& faces, CornerWeight weight) {
   SegmentSurface out;
   Eigen::AlignedBox3d box;
   for (const int f : faces) {
@@ -114,6 +119,7 @@ SegmentSurface segment_surface(const TriangleMesh& mesh, const std::vector<int>&
     out.face_normals.push_back(cross.norm() > 0 ? Vector3d(cross.normalized()) : Vector3d::Zero());
     out.area += out.areas.back();
   }
+  out.corner_normals.resize(out.corners.size());
   std::vector<Vector3d> corners;
   for (const auto& [vertex, at] : around) {
     const Vector3d p = (mesh.vertices[vertex] - out.origin) / out.scale;
@@ -123,16 +129,19 @@ SegmentSurface segment_surface(const TriangleMesh& mesh, const std::vector<int>&
       Vector3d sum = Vector3d::Zero();
       for (const int other : at) {
         if (out.face_normals[k].dot(out.face_normals[other]) < kSmooth) continue;
-        // Weighted by the angle at the corner, so that it does not matter how a wall is cut into triangles.
         int i = 0;
         for (int c = 0; c < 3; ++c) {
           if (mesh.triangles[faces[other]][c] == vertex) i = c;
         }
         const auto& c = out.corners[other];
         const Vector3d u = c[(i + 1) % 3] - c[i], v = c[(i + 2) % 3] - c[i];
-        sum += std::atan2(u.cross(v).norm(), u.dot(v)) * out.face_normals[other];
+        const double angle = std::atan2(u.cross(v).norm(), u.dot(v));
+        sum += (weight == CornerWeight::angle ? angle : out.areas[other]) * out.face_normals[other];
       }
       const Vector3d normal = sum.norm() > 0 ? Vector3d(sum.normalized()) : out.face_normals[k];
+      for (int c = 0; c < 3; ++c) {
+        if (mesh.triangles[faces[k]][c] == vertex) out.corner_normals[k][c] = normal;
+      }
       if (normal.isZero()) continue;
       const bool known =
           std::any_of(found.begin(), found.end(), [&](const Vector3d& n) { return n.dot(normal) > 0.999; });
@@ -174,6 +183,54 @@ FittedPrimitive box_candidate(const SegmentSurface& s) {
 
 }  // namespace detail
 
+namespace {
+
+/// A primitive that may stand for a segment: how far its volume is from the hull's [m^3], and the points that it was
+/// fitted to from it [m].
+struct PrimitiveChoice {
+  FittedPrimitive primitive;
+  double off = 0, spread = detail::kInfinity;
+};
+
+/// The round candidate whose volume is closest to the hull's takes the place of the choice where it is closer than
+/// that.
+void offer(std::vector<detail::RoundCandidate> candidates, double hull_volume, PrimitiveChoice& choice) {
+  for (detail::RoundCandidate& round : candidates) {
+    const double off = std::abs(round.primitive.volume - hull_volume);
+    if (off >= choice.off) continue;
+    round.trim();
+    choice = {std::move(round.primitive), off, round.spread};
+  }
+}
+
+/// Outlines for a choice: any for a box. Something round that lies on the surface gives way to one of its kind where
+/// the hull's corners lie so much closer to that, that grooves, not noise, are what the surface differs by. Both
+/// volumes are then close to the hull's, a polygon's.
+std::vector<detail::RoundCandidate> outlines_for(const PrimitiveChoice& choice, const SegmentSurface& surface,
+                                                 const Monitor& monitor) {
+  if (choice.spread < kExact * surface.scale) return {};
+  std::vector<detail::RoundCandidate> out = detail::outline_candidates(surface, monitor);
+  const bool is_box = choice.primitive.kind == PrimitiveKind::box;
+  const auto unlike = [&](const detail::RoundCandidate& round) {
+    return !is_box && (round.primitive.kind != choice.primitive.kind || round.spread > kSharper * choice.spread);
+  };
+  out.erase(std::remove_if(out.begin(), out.end(), unlike), out.end());
+  return out;
+}
+
+/// Box, cylinder, cone or sphere, whose volume is closest to that of the segment's hull.
+FittedPrimitive best_primitive(const SegmentSurface& surface, double hull_volume, const Monitor& monitor) {
+  PrimitiveChoice choice{detail::box_candidate(surface)};
+  choice.off = std::abs(choice.primitive.volume - hull_volume);
+  offer(detail::round_candidates(surface, monitor), hull_volume, choice);
+  std::vector<detail::RoundCandidate> outlines = outlines_for(choice, surface, monitor);
+  if (choice.primitive.kind != PrimitiveKind::box) choice.off = detail::kInfinity;
+  offer(std::move(outlines), hull_volume, choice);
+  return choice.primitive;
+}
+
+}  // namespace
+
 const char* primitive_kind_name(PrimitiveKind kind) {
   switch (kind) {
     case PrimitiveKind::cylinder:
@@ -210,6 +267,7 @@ std::vector<FittedPrimitive> fit_primitives(const TriangleMesh& mesh, const std:
       require(f >= 0 && f < static_cast<int>(labels.size()), "faces of a thread", f, "must be faces of the mesh");
     detail::smooth_thread(thread, outward);
   }
+  detail::JawReach reach(outward, min_contact);
   for (const std::vector<int>& faces : segments) {
     monitor.report("primitives", static_cast<double>(out.size()) / static_cast<double>(segments.size()));
     if (faces.empty()) {  // A number that no face has.
@@ -218,18 +276,10 @@ std::vector<FittedPrimitive> fit_primitives(const TriangleMesh& mesh, const std:
     }
     const SegmentSurface surface = detail::segment_surface(outward, faces);
     const double hull_volume = surface.hull.volume * std::pow(surface.scale, 3);
-    FittedPrimitive best = detail::box_candidate(surface);
-    double off = std::abs(best.volume - hull_volume);
-    for (detail::RoundCandidate& round : detail::round_candidates(surface, monitor)) {
-      const double other = std::abs(round.primitive.volume - hull_volume);
-      if (other >= off) continue;
-      off = other;
-      round.trim();
-      best = std::move(round.primitive);
-    }
+    FittedPrimitive best = best_primitive(surface, hull_volume, monitor);
     if (best.kind == PrimitiveKind::box) {
       best.volume = best.size.prod();
-      best.widths = detail::jaw_widths(outward, faces, best, min_contact);
+      best.widths = detail::jaw_widths(outward, faces, best, min_contact, reach);
     }
     best.hull_volume = hull_volume;
     if (monitor.stopped()) return {};

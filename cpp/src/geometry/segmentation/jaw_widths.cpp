@@ -35,12 +35,13 @@ double shadow_of(const FittedPrimitive& box, const Vector3d& axis) {
 }  // namespace
 
 std::vector<GraspWidth> jaw_widths(const TriangleMesh& mesh, const std::vector<int>& faces, const FittedPrimitive& box,
-                                   double min_contact) {
+                                   double min_contact, JawReach& reach) {
   OppositeFacetsOptions options;
   options.min_contact = min_contact;
   std::vector<GraspWidth> out;
   std::vector<double> areas;
   visit_opposite_facets(mesh, faces, options, [&](const OppositeFacets& pair) {
+    if (!reach.reaches(pair)) return;
     const Vector3d axis = pair.axes.col(2);
     const double near = kSameWidth + kRough * (roughness(mesh, pair.first) + roughness(mesh, pair.second));
     std::size_t k = 0;

@@ -17,6 +17,8 @@ namespace {
 using Eigen::Vector3d;
 /// Points no farther from a model than this share of the segment's size lie on it.
 constexpr double kOnSurface = 0.01;
+/// An outline is as long as its crests reach, which are no farther off it than this share.
+constexpr double kOnCrest = 0.001;
 /// Angle of a face's normal to the model's below which it lies on it [rad]: a facet of a wall of 12 sides does.
 constexpr double kAlike = 0.3;
 constexpr std::size_t kMostPoints = 3000;
@@ -87,6 +89,7 @@ Cover cover_of(const SegmentSurface& s, const RoundFit& fit, FacesOn on) {
     const double cosine = s.face_normals[f].dot(normal);
     if (off > kOnSurface || cosine < (on == FacesOn::along ? std::cos(kAlike) : kOutwards)) continue;
     for (const Vector3d& corner : s.corners[f]) {
+      if (on == FacesOn::any && std::abs(fit.distance(corner, unused)) > kOnCrest) continue;  // a chamfer's foot
       out.low = std::min(out.low, (corner - fit.point).dot(fit.axis));
       out.high = std::max(out.high, (corner - fit.point).dot(fit.axis));
     }

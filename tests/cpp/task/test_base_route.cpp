@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "mmgrasp/collision/floor.hpp"
+#include "mmgrasp/core/error.hpp"
 #include "support/small_storeroom.hpp"
 
 namespace mmgrasp {
@@ -133,7 +135,7 @@ double kept_in_passing(Room& room, const BasePath& path) {
 TEST(BaseRoute, KeepsItsClearanceInPassing) {
   for (BaseKind base : {BaseKind::diff_drive, BaseKind::omni}) {
     Room room;
-    room.world.add_floor(room.problem.arm, 0.0);  // what the wheels stand on does not count
+    add_floor(room.world, room.problem.arm, 0.0);  // what the wheels stand on does not count
     room.world.add("pillar", test::box_shape(0.4, 0.4, 1.0), test::at(2.5, 0.1, 0.5));
     room.world.add("table", test::box_shape(0.4, 1.0, 0.8), test::at(-0.6, 0, 0.4));  // nearer than that at the start
     const Eigen::Vector3d from(0, 0, 0), to(5, 0, 0);

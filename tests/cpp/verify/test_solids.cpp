@@ -69,7 +69,7 @@ TEST(Solids, ComeCloserThanTheirClosedFormSays) {
       {tin, tin, shifted(1, 0, 0.7), shifted(0, 0, 0), std::hypot(0.7, 0.2)},  // from rim to rim
       {pyramid, ball, shifted(0, 0, 0), shifted(0, 0, 0.55), 0.15},
       {pyramid, block, shifted(0, 0, 0), shifted(0, 0, 0.85), 0.25},
-      {pyramid, pyramid, shifted(0, 0, 0), shifted(0, -1.0, 0), 0.47},
+      {pyramid, pyramid, shifted(0, 0, 0), shifted(0, 0, 0.8), 0.5},
       {wall, ball, shifted(0, 0, 0), shifted(0, 3, 2), 0.9},
       {wall, pyramid, shifted(0.5, 0, 0), shifted(0, 0, 0), 0.3},
       {block, wall, shifted(0.2, 0, 0), shifted(0.3, 5, 0), 0.7},
@@ -81,8 +81,10 @@ TEST(Solids, ComeCloserThanTheirClosedFormSays) {
     EXPECT_FALSE(closer_than(row.distance - 1e-5, row.b, row.T_b, row.a, row.T_a)) << index;
     EXPECT_TRUE(closer_than(row.distance + 1e-5, row.b, row.T_b, row.a, row.T_a)) << index;
   }
-  const Solid grain = solid_of(Sphere{0.01});
-  EXPECT_TRUE(closer_than(0.001, pyramid, shifted(0, 0, 0), grain, shifted(0, 0, 0.1))) << "within a closed mesh";
+  auto closed = std::make_shared<TriangleMesh>(*two_pieces());
+  closed->closed = true;
+  const Solid solid = solid_of(MeshShape{closed}), grain = solid_of(Sphere{0.01});
+  EXPECT_TRUE(closer_than(0.001, solid, shifted(0, 0, 0), grain, shifted(0, 0, 0.1))) << "within a closed mesh";
 }
 
 }  // namespace

@@ -17,6 +17,8 @@ using Bounds = Eigen::AlignedBox3d;
 /// One shape fixed to a body, as FCL sees it.
 struct Solid {
   std::shared_ptr<const fcl::CollisionGeometryd> geometry;
+  /// The triangles of a mesh or a box: between triangles FCL's distances are right, of boxes they may be far off.
+  std::shared_ptr<const fcl::CollisionGeometryd> faces;
   Pose T_body_shape = Pose::Identity();
   Bounds local;                              ///< Bounds in the shape's frame.
   bool unbounded = false;                    ///< A plane: all that lies below it.

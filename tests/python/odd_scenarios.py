@@ -150,7 +150,7 @@ def planned(loaded: Scenario, path: Path, in_passing: bool, watch: Watch) -> tup
         assert str(plan), "no plan without a word"
         return plan.outcome.name, found_after_all(loaded, watch) if plan.outcome == mg.Outcome.infeasible else []
     folder = path.parent
-    if in_passing:
+    if in_passing and not loaded.drive_clearance:
         mg.part_supply.plan_drive_by_picks(plan, progress=watch).save(folder)
     else:
         plan.save(folder / "plan.json")

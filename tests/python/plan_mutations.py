@@ -94,7 +94,6 @@ def plan_and_scenario(folder: Path) -> tuple[dict[str, Any], Path]:
     scenario["trays"] = [{**scenario["trays"][i], "targets": scenario["trays"][i]["targets"][:1]} for i in (0, 1, 3)]
     scenario["reach"] = {"samples": 500_000}
     scenario["arrival_covariance"] = ARRIVALS
-    scenario["drive_clearance"] = 0.05
     path = folder / "scenario.yaml"
     path.write_text(yaml.safe_dump(scenario, sort_keys=False))
     return mg.part_supply.plan_drive_by_picks(mg.plan_part_supply(path)).plan_to_dict(), path

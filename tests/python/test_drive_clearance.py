@@ -97,7 +97,18 @@ def test_one_that_is_too_large_is_told_with_one_that_works(roomy: dict[str, Any]
     assert again.outcome == mg.Outcome.solved
 
 
-@pytest.mark.parametrize("value", [-0.1, 10.5, "wide", None])
+def test_motions_in_passing_are_refused_beside_it(
+    plan: mg.part_supply.ScenarioPlan, small_plan: mg.part_supply.ScenarioPlan
+) -> None:
+    with pytest.raises(mg.InvalidInput, match="scenario.yaml: drive-by: motions in passing do not keep drive_clearance"):
+        mg.part_supply.plan_drive_by_picks(plan)
+    values = mg.part_supply.plan_drive_by_picks(small_plan).plan_to_dict()
+    assert values["drive_by"]["motions"]
+    values["scenario"]["drive_clearance"] = 0.001
+    assert {fault.code for fault in mg.verify_plan(values).faults} == {"route-clearance"}
+
+
+@pytest.mark.parametrize("value", [-0.1, 1e-9, 10.5, "wide", None])
 def test_bad_ones_are_refused_at_their_line(roomy: dict[str, Any], value: Any, write: Write) -> None:
     with pytest.raises(mg.InvalidInput, match="drive_clearance"):
         load_scenario(write(roomy | {"drive_clearance": value}))

@@ -59,7 +59,9 @@ BEYOND: dict[str, list[tuple[tuple[str | int, ...], Any, str]]] = {
         (("options",), {"route_resolution": 0.0009}, "route_resolution"),
         (("options",), {"route_resolution": 101}, "route_resolution"),
     ],
-    "`drive_clearance`": [(("drive_clearance",), -0.01, "drive_clearance"), (("drive_clearance",), 10.1, "10")],
+    "`drive_clearance`": [
+        (("drive_clearance",), value, "0, or lie between 0.001 and 10") for value in (-0.01, 0.0009, 10.1)
+    ],
     "`approach_distance`, `lift_height`": [
         (("options",), {"approach_distance": 0.0009}, "approach_distance"),
         (("options",), {"approach_distance": 10.1}, "approach_distance"),

@@ -15,8 +15,9 @@ using Triangle = std::array<int, 3>;
 
 /// Corners of a shell that are looked at, evenly out of all, to see whether another one is around it.
 constexpr std::size_t kLookedAt = 64;
-/// They are moved out from its middle by this share: what touches the shell around it is not within.
-constexpr double kOutwards = 1e-6;
+/// They are moved from its middle by this share, out and in: what lies within another shell when they are moved in, but
+/// not when they are moved out, touches it from inside.
+constexpr double kMoved = 1e-6;
 
 struct ShellExtent {
   double volume = 0;  // [m^3], below zero where it looks inwards
@@ -41,7 +42,9 @@ std::vector<ShellExtent> extents(const std::vector<Vector3d>& v, const std::vect
 /// A point of a shell, and how often the shell that is asked about goes around it.
 struct ShellPoint {
   Vector3d place;
-  int shell, winding = 0;
+  int shell;
+  bool moved_out;
+  int winding = 0;
 };
 
 /// Where the ray through a point meets the plane z = 0.
@@ -73,14 +76,15 @@ void count_windings(const std::vector<Vector3d>& v, const std::vector<Triangle>&
   }
 }
 
-/// Corners of a shell, moved out from its middle a little.
+/// Corners of a shell, moved out from its middle a little, and in.
 void add_points(const std::vector<Vector3d>& v, const std::vector<Triangle>& triangles, const ShellExtent& shell,
                 int number, std::vector<ShellPoint>& out) {
   const Vector3d middle = shell.bounds.center();
   const std::size_t stride = 1 + shell.triangles.size() / kLookedAt;
   for (std::size_t i = 0; i < shell.triangles.size(); i += stride)
     for (const int corner : triangles[shell.triangles[i]])
-      out.push_back({v[corner] + kOutwards * (v[corner] - middle), number});
+      for (const bool outwards : {true, false})
+        out.push_back({v[corner] + (outwards ? kMoved : -kMoved) * (v[corner] - middle), number, outwards});
 }
 
 /// Pairs (outer, inner) of shells whose bounds lie in each other.
@@ -104,23 +108,29 @@ std::vector<std::vector<int>> within_bounds(const std::vector<ShellExtent>& shel
   return out;
 }
 
-/// For each shell those that it lies wholly in.
-std::vector<std::vector<int>> shells_around(const std::vector<Vector3d>& v, const std::vector<Triangle>& triangles,
-                                            const std::vector<ShellExtent>& shells) {
+struct Nesting {
+  std::vector<std::vector<int>> around;  ///< For each shell those that it lies wholly in.
+  std::vector<char> touches;             ///< Whether it touches one of them, or of others, from inside.
+};
+
+Nesting nesting(const std::vector<Vector3d>& v, const std::vector<Triangle>& triangles,
+                const std::vector<ShellExtent>& shells) {
   const std::vector<std::vector<int>> within = within_bounds(shells);
-  std::vector<std::vector<int>> out(shells.size());
-  std::vector<char> outside(shells.size());
+  Nesting out{std::vector<std::vector<int>>(shells.size()), std::vector<char>(shells.size(), 0)};
+  std::vector<char> outside(shells.size()), crosses(shells.size());
   for (std::size_t o = 0; o < shells.size(); ++o) {
     if (within[o].empty()) continue;
     std::vector<ShellPoint> points;
     for (const int s : within[o]) {
-      outside[s] = 0;
+      outside[s] = crosses[s] = 0;
       add_points(v, triangles, shells[s], s, points);
     }
     count_windings(v, triangles, shells[o], points);
-    for (const ShellPoint& p : points) outside[p.shell] |= p.winding == 0;
-    for (const int s : within[o])
-      if (!outside[s]) out[s].push_back(static_cast<int>(o));
+    for (const ShellPoint& p : points) (p.moved_out ? outside : crosses)[p.shell] |= p.winding == 0;
+    for (const int s : within[o]) {
+      if (!outside[s]) out.around[s].push_back(static_cast<int>(o));
+      out.touches[s] |= outside[s] && !crosses[s];
+    }
   }
   return out;
 }
@@ -130,7 +140,7 @@ std::vector<std::vector<int>> shells_around(const std::vector<Vector3d>& v, cons
 std::vector<ShellFate> shell_fates(const std::vector<Vector3d>& vertices, const std::vector<Triangle>& triangles,
                                    const Shells& shells) {
   const std::vector<ShellExtent> all = extents(vertices, triangles, shells);
-  const std::vector<std::vector<int>> around = shells_around(vertices, triangles, all);
+  const auto [around, touches] = nesting(vertices, triangles, all);
   std::vector<int> order(all.size()), sense(all.size(), 0);
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return around[a].size() < around[b].size(); });
@@ -142,7 +152,8 @@ std::vector<ShellFate> shell_fates(const std::vector<Vector3d>& vertices, const 
       winding += sense[o];
       if (innermost < 0 || around[o].size() > around[innermost].size()) innermost = o;
     }
-    const bool inwards = all[s].volume<0, in_material = winding> 0;
+    const bool inwards = all[s].volume < 0;
+    const bool in_material = winding > 0 && !touches[s];
     sense[s] = in_material && (inwards || was_inside_out[innermost]) ? -1 : 1;
     was_inside_out[s] = in_material ? was_inside_out[innermost] : inwards;
     const bool bounds_solid = !in_material || winding + sense[s] == 0;

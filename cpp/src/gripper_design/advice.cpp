@@ -11,9 +11,10 @@
 namespace mmgrasp::detail {
 namespace {
 
-constexpr double kSlightly = 1e-4;  // The least of something does not help when it is smaller by this [m].
-constexpr double kThinnest = 1e-3;  // Thinner fingers are not advised [m].
-constexpr double kPrinted = 1e-5;   // Lengths are printed to this [m].
+constexpr double kSlightly = 1e-4;   // The least of something does not help when it is smaller by this [m].
+constexpr double kThinnest = 1e-3;   // Thinner fingers are not advised [m].
+constexpr double kPrinted = 1e-5;    // Lengths are printed to this [m].
+constexpr double kAirBeside = 2e-5;  // Fingers that just touch a wall beside them are refused by a rehearsal [m].
 constexpr int kPrintedDigits = 8;
 
 std::string printed(double length) {
@@ -145,8 +146,9 @@ void advise_less(const Judgement& by, double PlanGrippersOptions::*option, const
 }
 
 /// The largest width or thickness of fingers with which the operation can be done, if one does: less of either meets
-/// less, so it is found by bisection.
-void advise_slimmer(const Judgement& by, double PlanGrippersOptions::*option, const std::string& name, Advice& advice) {
+/// less, so it is found by bisection. `air` is left beside the fingers.
+void advise_slimmer(const Judgement& by, double PlanGrippersOptions::*option, const std::string& name, double air,
+                    Advice& advice) {
   PlanGrippersOptions changed = by.options;
   const auto helps = [&](double length) {
     changed.*option = length;
@@ -158,7 +160,8 @@ void advise_slimmer(const Judgement& by, double PlanGrippersOptions::*option, co
     const double between = hundredths_down((slim + thick) / 2);
     (helps(between) ? slim : thick) = between;
   }
-  advice.say("fingers " + printed(slim) + " " + name + " would do");
+  slim = hundredths_down(slim - air);
+  if (slim >= kThinnest && helps(slim)) advice.say("fingers " + printed(slim) + " " + name + " would do");
 }
 
 }  // namespace
@@ -174,8 +177,8 @@ std::vector<std::string> advice_without_grasp(const Judgement& by, const Remedy&
     advice.try_option(&O::shortest_finger, shortest, "fingers as short as " + printed(shortest) + " would do");
   if (remedy.min_contact > 0)
     advice.try_option(&O::min_contact, contact, "a min_contact of " + printed(contact) + " would do");
-  advise_slimmer(by, &O::finger_thickness, "thick", advice);
-  advise_slimmer(by, &O::finger_width, "wide", advice);
+  advise_slimmer(by, &O::finger_thickness, "thick", 0, advice);
+  advise_slimmer(by, &O::finger_width, "wide", kAirBeside, advice);
   advise_drives(by, remedy, advice);
   if (remedy.min_contact <= 0)
     advise_less(by, &O::min_contact, "a min_contact of ", smaller(by.options.min_contact), advice);

@@ -88,12 +88,13 @@ class Places {
   /// What lies between the openings of a gripper that opens from `low`, by the shortest fingers asked.
   std::vector<Asked> between(double low) const {
     const auto begin = std::partition_point(asked_.begin(), asked_.end(),
-                                            [&](const Asked& a) { return !at_most(low, a.range.lowest); });
+                                            [&](const Asked& a) { return !at_most(low, a.range.highest); });
     const auto end = std::partition_point(
         begin, asked_.end(), [&](const Asked& a) { return at_most(a.range.highest, low + actuator_.stroke); });
     std::vector<Asked> out;
+    // Unequal clearances: what opens widest need not close least.
     std::copy_if(begin, end, std::back_inserter(out),
-                 [&](const Asked& a) { return at_most(a.range.least_closed, low); });
+                 [&](const Asked& a) { return at_most(low, a.range.lowest) && at_most(a.range.least_closed, low); });
     std::sort(out.begin(), out.end(), [](const Asked& a, const Asked& b) {
       return std::make_pair(a.range.shortest, a.range.longest) < std::make_pair(b.range.shortest, b.range.longest);
     });

@@ -195,9 +195,17 @@ class DriveByPlan:
 def check_in_passing(scenario: Scenario) -> None:
     """Raises InvalidInput for a round of which no part can be taken in passing."""
     if scenario.setup.gripper.suction is not None:
-        raise InvalidInput("drive-by: needs a hand with fingers, which close in passing; this one has suction cups")
+        raise InvalidInput(
+            f"{scenario.source}: drive-by: needs a hand with fingers, which close in passing; this one has suction cups"
+        )
     if scenario.setup.place_region.capacity:
-        raise InvalidInput("drive-by: parts are not taken in passing with a place_region.capacity, of several trips")
+        raise InvalidInput(
+            f"{scenario.source}: drive-by: parts are not taken in passing with a place_region.capacity, of several trips"
+        )
+    if scenario.drive_clearance:
+        raise InvalidInput(
+            f"{scenario.source}: drive-by: motions in passing do not keep drive_clearance: leave it out for them"
+        )
 
 
 @checked

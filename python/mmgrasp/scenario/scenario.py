@@ -38,6 +38,7 @@ MOST_TRAYS = 1000
 MOST_OBSTACLES = 10_000
 LARGEST_OBSTACLE = 1000.0  # a side of a box, and how far off [m]
 LONGEST_ARM = 10.0  # [m]
+LEAST_CLEARANCE, MOST_CLEARANCE = 0.001, 10.0  # of drives [m]
 LEAST_SAMPLES = 10_000  # of the database of what the arm reaches
 SHAPE_KEYS = "box cylinder sphere mesh shapes scale"
 FILE_KEYS = {
@@ -164,7 +165,7 @@ def _read_scenario(
         least=0, most=_core._supply_option_bounds()["positioning_uncertainty"][1]
     )
     covariance = _read_covariance(root["arrival_covariance"]) if "arrival_covariance" in root else None
-    clearance = root["drive_clearance"].number(least=0, most=10) if "drive_clearance" in root else 0.0
+    clearance = _read_clearance(root["drive_clearance"]) if "drive_clearance" in root else 0.0
     options = _read_options(root, "options", _core._supply_option_table(), {"positioning_uncertainty"})
     if covariance is not None and options.get("robustness_samples", 1) == 0:
         root["options"]["robustness_samples"].fail(
@@ -249,6 +250,13 @@ def _read_options(root: Node, section: str, table: dict[str, tuple[Any, str]], e
         except InvalidInput as error:
             root[section][key].fail(re.sub(r"^[\w.]+ = \S+: ", "", str(error)))  # told with its name in the file
     return options
+
+
+def _read_clearance(node: Node) -> float:
+    clearance = node.number()
+    if clearance != 0 and not LEAST_CLEARANCE <= clearance <= MOST_CLEARANCE:
+        node.fail(f"must be 0, or lie between {LEAST_CLEARANCE:g} and {MOST_CLEARANCE:g}")
+    return clearance
 
 
 def _read_covariance(node: Node) -> np.ndarray:

@@ -119,6 +119,18 @@ TEST(NestedShells, WhatCrossesOrTouchesIsNoVoid) {
   }
 }
 
+TEST(NestedShells, ABodyOnTheFloorOfAVoidIsThere) {
+  for (const double above : {0.0, 0.1}) {
+    for (const double turn : {0.0, 0.4}) {
+      for (const bool inwards : {false, true}) {
+        const auto [mesh, faults] = cubes({{2, false}, {1, true}, {0.5, inwards, {0, 0, above - 0.25}}}, turn);
+        EXPECT_NEAR(mesh_volume(*mesh), 8 - 1 + 0.125, 1e-12) << above << turn;
+        EXPECT_EQ(faults.enclosed_bodies, 0);
+      }
+    }
+  }
+}
+
 TEST(NestedShells, HollowBallsOfManyFaces) {
   const auto outer = shape_mesh(Sphere{1}, 64), inner = shape_mesh(Sphere{0.6}, 32);
   for (const bool inwards : {false, true}) {

@@ -59,7 +59,8 @@ struct BruteForce {
     for (const auto& a : actuators) {
       std::vector<double> lows{0, a.max_opening - a.stroke}, lengths{options.shortest_finger, options.longest_finger};
       for (const auto& r : requirements) {
-        for (const double low : {r.opening, r.opening - a.stroke, r.least_min_opening}) lows.push_back(low);
+        for (const double low : {r.opening, r.opening + 2 * r.clearance - a.stroke, r.least_min_opening})
+          lows.push_back(low);
         for (const double length : {r.min_finger_length, r.max_finger_length}) lengths.push_back(length);
       }
       for (const double low : lows) {
@@ -76,7 +77,7 @@ struct BruteForce {
     unsigned mask = 0;
     for (const auto& r : requirements) {
       const bool holds = r.fingers == a.fingers && r.least_min_opening <= low + 1e-9 && low <= r.opening + 1e-9 &&
-                         r.opening <= low + a.stroke + 1e-9 && r.min_finger_length <= length &&
+                         r.opening + 2 * r.clearance <= low + a.stroke + 1e-9 && r.min_finger_length <= length &&
                          length <= r.max_finger_length;
       if (holds) mask |= 1u << (std::find(parts.begin(), parts.end(), r.part) - parts.begin());
     }

@@ -104,7 +104,7 @@ struct MMGRASP_EXPORT PartSupplyProblem {
   /// discs of the positioning uncertainty are all that counts.
   Eigen::Matrix3d arrival_covariance = Eigen::Matrix3d::Zero();
   /// Drives keep this far from all but the ground wherever the base is farther than kNearEnds from both their ends [m];
-  /// in [0, 10]. Motions in passing are not asked for it.
+  /// 0: not asked for, or in [0.001, 10]. Motions in passing do not keep it.
   double drive_clearance = 0;
   /// Throws InvalidInput naming the field, the value and the rule.
   void check() const;

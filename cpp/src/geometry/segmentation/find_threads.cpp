@@ -211,7 +211,8 @@ std::optional<double> common_winding(const EdgesAround& edges) {
   // grid's.
   for (double below = kSlower * std::abs(best.winding); below > least; below = kSlower * std::abs(best.winding)) {
     const Unwinding slower = best_unwinding(near, least, below, step);
-    if (slower.length < kAsLong * best.length) break;
+    // Refined it may come out faster than what was asked for, which would go on without an end.
+    if (slower.length < kAsLong * best.length || std::abs(slower.winding) > below) break;
     best = slower;
   }
   if (best.length < kInPhase * length) return std::nullopt;

@@ -114,7 +114,8 @@ void PartSupplyProblem::check() const {
   require_within(place_region.capacity, 0, 1e6, "place_region.capacity", "parts (0: all)");
   require(world.attached().empty(), "world", "an attached object", "must hold nothing attached at the start");
   check_arrival_covariance(arrival_covariance);
-  require_within(drive_clearance, 0, 10, "drive_clearance", "m");
+  require(drive_clearance == 0 || (drive_clearance >= 1e-3 && drive_clearance <= 10), "drive_clearance",
+          drive_clearance, "must be 0, or in [0.001, 10] m");
   require(arrival_covariance.isZero(0) || options.robustness_samples > 0, "robustness_samples", 0,
           "must be positive with an arrival_covariance: so many arrivals are drawn");
   check_trays(*this);

@@ -231,6 +231,8 @@ std::vector<std::size_t> known_picks(const Context& context, Faults& faults) {
 
 void check_drive_by(const Context& context, Faults& faults, std::size_t& configurations) {
   const std::vector<std::size_t> known = known_picks(context, faults);
+  if (!known.empty() && context.plan.drive_clearance > 0)
+    faults.push_back({"route-clearance", "drive-by", "motions in passing do not keep drive_clearance"});
   std::vector<Judge> judges(resolve_threads(context.options.threads), Judge(context.stage));
   std::vector<Faults> found(known.size());
   parallel_for(

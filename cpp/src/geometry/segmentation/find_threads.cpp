@@ -49,6 +49,10 @@ constexpr double kAlike = 0.94;
 /// Longest chains tried.
 constexpr std::size_t kMostChains = 12;
 
+/// How the mesh shows the root of a thread: edges run along it, or, on a grid around the axis, they run along the
+/// grid's rings and the root steps from ring to ring.
+enum class RootForm { swept, stepped };
+
 /// The screw motion along which the edges run: each edge e at x is parallel to moment + axis x x (least squares over
 /// the six coordinates, edges weighted by their length).
 std::optional<Helix> fit_helix(const FaceGraph& graph, const std::vector<int>& chain) {
@@ -117,7 +121,7 @@ void refine_axis(const FaceGraph& graph, const std::vector<int>& chain, Helix& h
 /// The roots of all that run along the helix at the radius that most of the chain's edges have: not those of the head
 /// that the thread ends on nor branches that noise makes, but pieces of the chain that noise broke off.
 std::vector<int> edges_along(const FaceGraph& graph, const std::vector<int>& all, const std::vector<int>& chain,
-                             const Helix& helix) {
+                             RootForm form, const Helix& helix) {
   std::vector<std::pair<double, double>> radii;
   double length = 0;
   for (const int k : chain) {
@@ -133,7 +137,8 @@ std::vector<int> edges_along(const FaceGraph& graph, const std::vector<int>& all
     sum += weight;
     if (2 * sum >= length) break;
   }
-  const double reach = std::max(kRadius * kTwoPi * std::abs(helix.pitch_per_radian), kSameRadius * median);
+  const double least = form == RootForm::stepped ? kSameRadius * median : 0;
+  const double reach = std::max(kRadius * kTwoPi * std::abs(helix.pitch_per_radian), least);
   std::vector<int> out;
   InterruptionPoll poll;
   for (const int k : all) {
@@ -189,7 +194,7 @@ Unwinding best_unwinding(const std::vector<HelixTurn>& turns, double least, doub
 
 /// The winding at which edges, unwound, come to lie at one angle [rad/m]. None where they do not: edges of rings are
 /// spread evenly over the turn whatever the winding, and so are edges that noise makes.
-std::optional<double> common_winding(const EdgesAround& edges) {
+std::optional<double> common_winding(const EdgesAround& edges, RootForm form) {
   HelixSpan heights, looked_at;
   for (const HelixTurn& t : edges.turns) heights.add(t.height);
   // The steps grow with the height looked at: without an end where the edges lie on the axis itself, as those of a bore
@@ -208,11 +213,11 @@ std::optional<double> common_winding(const EdgesAround& edges) {
   const double most = kTwoPi / (kFinest * edges.radius), least = kTwoPi / (kCoarsest * edges.radius), step = 1 / span;
   Unwinding best = best_unwinding(near, least, most, step);
   // Edges on a grid around the axis lie at one angle for faster windings, too: their heights are multiples of the
-  // grid's.
-  for (double below = kSlower * std::abs(best.winding); below > least; below = kSlower * std::abs(best.winding)) {
+  // grid's. Refined, a winding may come out a little faster than asked for: each is sought below the last.
+  double below = kInfinity;
+  while (form == RootForm::stepped && (below = kSlower * std::min(below, std::abs(best.winding))) > least) {
     const Unwinding slower = best_unwinding(near, least, below, step);
-    // Refined it may come out faster than what was asked for, which would go on without an end.
-    if (slower.length < kAsLong * best.length || std::abs(slower.winding) > below) break;
+    if (slower.length < kAsLong * best.length) break;
     best = slower;
   }
   if (best.length < kInPhase * length) return std::nullopt;
@@ -220,9 +225,9 @@ std::optional<double> common_winding(const EdgesAround& edges) {
 }
 
 /// The edges that lie at one angle when they are unwound by their common winding, which the helix takes over.
-std::vector<int> edges_in_phase(const FaceGraph& graph, const std::vector<int>& edges, Helix& helix) {
+std::vector<int> edges_in_phase(const FaceGraph& graph, const std::vector<int>& edges, RootForm form, Helix& helix) {
   const EdgesAround around = edges_around(graph, edges, helix);
-  const std::optional<double> winding = common_winding(around);
+  const std::optional<double> winding = common_winding(around, form);
   if (!winding) return {};
   helix.pitch_per_radian = 1 / *winding;
   const double phase = std::arg(unwound(around.turns, *winding));
@@ -233,12 +238,12 @@ std::vector<int> edges_in_phase(const FaceGraph& graph, const std::vector<int>& 
   return out;
 }
 
-/// A helix along edges: its axis by where they run, its pitch by where they are, for edges of a grid around the axis
-/// run along the grid's rings. Where they are at no winding (a ring) it is the pitch by which they run.
-std::optional<Helix> helix_along(const FaceGraph& graph, const std::vector<int>& edges) {
+/// A helix along edges: its axis and its pitch by where they run. Of a stepped root they run along rings, and its pitch
+/// is by where they are; where they are at no winding (a ring) it is the pitch by which they run.
+std::optional<Helix> helix_along(const FaceGraph& graph, const std::vector<int>& edges, RootForm form) {
   std::optional<Helix> out = fit_helix(graph, edges);
-  if (!out) return out;
-  if (const std::optional<double> winding = common_winding(edges_around(graph, edges, *out)))
+  if (!out || form == RootForm::swept) return out;
+  if (const std::optional<double> winding = common_winding(edges_around(graph, edges, *out), form))
     out->pitch_per_radian = 1 / *winding;
   return out;
 }
@@ -324,9 +329,9 @@ RootsAt roots_at(const FaceGraph& graph) {
   return out;
 }
 
-/// Edges that bend inwards and go on from one: straight on from its ends, or beside it, alike, across a face: on a grid
-/// around the axis the root steps from ring to ring.
-std::vector<int> roots_beside(const FaceGraph& graph, const RootsAt& roots, int edge) {
+/// Edges that bend inwards and go on from one: straight on from its ends, and of a stepped root beside it, alike,
+/// across a face.
+std::vector<int> roots_beside(const FaceGraph& graph, const RootsAt& roots, RootForm form, int edge) {
   const FaceBorder& from = graph.borders[edge];
   const auto away = [&](int k, int vertex) -> Vector3d {
     const FaceBorder& b = graph.borders[k];
@@ -337,6 +342,7 @@ std::vector<int> roots_beside(const FaceGraph& graph, const RootsAt& roots, int 
   for (const int v : from.vertices)
     for (const int next : roots.at(v))
       if (away(edge, v).dot(away(next, v)) < -0.5) out.push_back(next);
+  if (form == RootForm::swept) return out;
   for (const int face : {from.first, from.second}) {
     for (const int v : graph.faces[face]) {
       const auto found = roots.find(v);
@@ -349,7 +355,7 @@ std::vector<int> roots_beside(const FaceGraph& graph, const RootsAt& roots, int 
 }
 
 /// Chains of edges that bend inwards and lead on from one another: several starts make several chains.
-std::vector<std::vector<int>> root_chains(const FaceGraph& graph) {
+std::vector<std::vector<int>> root_chains(const FaceGraph& graph, RootForm form) {
   const RootsAt roots = roots_at(graph);
   std::vector<char> taken(graph.borders.size(), 0);
   std::vector<std::vector<int>> chains;
@@ -361,7 +367,7 @@ std::vector<std::vector<int>> root_chains(const FaceGraph& graph) {
       taken[begin] = 1;
       for (std::size_t i = 0; i < chain.size(); ++i) {
         poll();
-        for (const int next : roots_beside(graph, roots, chain[i])) {
+        for (const int next : roots_beside(graph, roots, form, chain[i])) {
           if (taken[next]) continue;
           taken[next] = 1;
           chain.push_back(next);
@@ -373,50 +379,74 @@ std::vector<std::vector<int>> root_chains(const FaceGraph& graph) {
   return chains;
 }
 
+/// Finds the threads of a mesh one after the other; their faces and edges are taken.
+class ThreadSearch {
+ public:
+  explicit ThreadSearch(const TriangleMesh& mesh) : taken_(mesh.triangles.size(), 0) {
+    graph_.vertices = mesh.vertices;
+    graph_.faces = mesh.triangles;
+    graph_.measure();
+    for (std::size_t k = 0; k < graph_.borders.size(); ++k) {
+      if (graph_.borders[k].bend <= -kRootBend) roots_.push_back(static_cast<int>(k));
+    }
+  }
+
+  void run(RootForm form) {
+    std::vector<std::vector<int>> chains = root_chains(graph_, form);
+    std::stable_sort(chains.begin(), chains.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });
+    if (chains.size() > kMostChains) chains.resize(kMostChains);
+    for (const std::vector<int>& chain : chains) {
+      throw_if_interrupted();
+      const auto known = std::count_if(chain.begin(), chain.end(), [&](int k) { return on_known(k); });
+      if (2 * known > static_cast<std::ptrdiff_t>(chain.size())) continue;  // another start or piece of the same thread
+      if (auto thread = thread_along(chain, form)) take(std::move(*thread));
+    }
+  }
+
+  std::vector<ScrewThread> found;
+
+ private:
+  bool on_known(int border) const {
+    return taken_[graph_.borders[border].first] || taken_[graph_.borders[border].second];
+  }
+
+  std::optional<ScrewThread> thread_along(const std::vector<int>& chain, RootForm form) const {
+    std::optional<Helix> helix = helix_along(graph_, chain, form);
+    std::vector<int> along = chain;
+    for (int fit = 0; fit < kFits && helix; ++fit) {
+      along = edges_along(graph_, roots_, along, form, *helix);
+      helix = helix_along(graph_, along, form);
+    }
+    if (!helix) return std::nullopt;
+    refine_axis(graph_, along, *helix);
+    const std::vector<int> turns = edges_of_one_thread(graph_, edges_in_phase(graph_, along, form, *helix), *helix);
+    if (turns.empty()) return std::nullopt;
+    refine_axis(graph_, turns, *helix);
+    HelixSpan heights;
+    double root = 0;
+    if (!is_thread_root(graph_, turns, *helix, heights, root)) return std::nullopt;
+    return thread_around(graph_, *helix, heights, root);
+  }
+
+  void take(ScrewThread thread) {
+    const auto again = std::count_if(thread.faces.begin(), thread.faces.end(), [&](int f) { return taken_[f] != 0; });
+    if (2 * again > static_cast<std::ptrdiff_t>(thread.faces.size())) return;
+    for (const int f : thread.faces) taken_[f] = 1;
+    roots_.erase(std::remove_if(roots_.begin(), roots_.end(), [&](int k) { return on_known(k); }), roots_.end());
+    found.push_back(std::move(thread));
+  }
+
+  FaceGraph graph_;
+  std::vector<char> taken_;  // Faces of threads that are found.
+  std::vector<int> roots_;   // Edges that bend inwards, those of found threads left out.
+};
+
 }  // namespace
 
 std::vector<ScrewThread> find_threads(const TriangleMesh& mesh) {
-  FaceGraph graph;
-  graph.vertices = mesh.vertices;
-  graph.faces = mesh.triangles;
-  graph.measure();
-  std::vector<ScrewThread> out;
-  std::vector<char> taken(graph.faces.size(), 0);
-  std::vector<std::vector<int>> chains = root_chains(graph);
-  std::vector<int> roots;
-  for (std::size_t k = 0; k < graph.borders.size(); ++k) {
-    if (graph.borders[k].bend <= -kRootBend) roots.push_back(static_cast<int>(k));
-  }
-  std::stable_sort(chains.begin(), chains.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });
-  if (chains.size() > kMostChains) chains.resize(kMostChains);
-  for (const std::vector<int>& chain : chains) {
-    throw_if_interrupted();
-    const auto on_known = [&](int k) { return taken[graph.borders[k].first] || taken[graph.borders[k].second]; };
-    const auto known = std::count_if(chain.begin(), chain.end(), on_known);
-    if (2 * known > static_cast<std::ptrdiff_t>(chain.size())) continue;  // another start or piece of the same thread
-    std::optional<Helix> helix = helix_along(graph, chain);
-    std::vector<int> along = chain;
-    for (int fit = 0; fit < kFits && helix; ++fit) {
-      along = edges_along(graph, roots, along, *helix);
-      helix = helix_along(graph, along);
-    }
-    if (!helix) continue;
-    refine_axis(graph, along, *helix);
-    const std::vector<int> turns = edges_of_one_thread(graph, edges_in_phase(graph, along, *helix), *helix);
-    if (turns.empty()) continue;
-    refine_axis(graph, turns, *helix);
-    HelixSpan heights;
-    double root = 0;
-    if (!is_thread_root(graph, turns, *helix, heights, root)) continue;
-    std::optional<ScrewThread> thread = thread_around(graph, *helix, heights, root);
-    if (!thread) continue;
-    const auto again = std::count_if(thread->faces.begin(), thread->faces.end(), [&](int f) { return taken[f] != 0; });
-    if (2 * again > static_cast<std::ptrdiff_t>(thread->faces.size())) continue;
-    for (const int f : thread->faces) taken[f] = 1;
-    roots.erase(std::remove_if(roots.begin(), roots.end(), on_known), roots.end());
-    out.push_back(std::move(*thread));
-  }
-  return out;
+  ThreadSearch search(mesh);
+  for (const RootForm form : {RootForm::swept, RootForm::stepped}) search.run(form);
+  return std::move(search.found);
 }
 
 void smooth_thread(const ScrewThread& thread, TriangleMesh& mesh) {

@@ -121,7 +121,7 @@ void refine_axis(const FaceGraph& graph, const std::vector<int>& chain, Helix& h
 /// The roots of all that run along the helix at the radius that most of the chain's edges have: not those of the head
 /// that the thread ends on nor branches that noise makes, but pieces of the chain that noise broke off.
 std::vector<int> edges_along(const FaceGraph& graph, const std::vector<int>& all, const std::vector<int>& chain,
-                             RootForm form, const Helix& helix) {
+                             const Helix& helix) {
   std::vector<std::pair<double, double>> radii;
   double length = 0;
   for (const int k : chain) {
@@ -137,8 +137,7 @@ std::vector<int> edges_along(const FaceGraph& graph, const std::vector<int>& all
     sum += weight;
     if (2 * sum >= length) break;
   }
-  const double least = form == RootForm::stepped ? kSameRadius * median : 0;
-  const double reach = std::max(kRadius * kTwoPi * std::abs(helix.pitch_per_radian), least);
+  const double reach = std::max(kRadius * kTwoPi * std::abs(helix.pitch_per_radian), kSameRadius * median);
   std::vector<int> out;
   InterruptionPoll poll;
   for (const int k : all) {
@@ -414,7 +413,7 @@ class ThreadSearch {
     std::optional<Helix> helix = helix_along(graph_, chain, form);
     std::vector<int> along = chain;
     for (int fit = 0; fit < kFits && helix; ++fit) {
-      along = edges_along(graph_, roots_, along, form, *helix);
+      along = edges_along(graph_, roots_, along, *helix);
       helix = helix_along(graph_, along, form);
     }
     if (!helix) return std::nullopt;

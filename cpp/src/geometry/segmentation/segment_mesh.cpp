@@ -26,6 +26,8 @@ using Eigen::Vector3d;
 constexpr std::size_t kMostTriangles = 10'000'000;
 /// Segments more of whose area than this is thread are said to be threaded.
 constexpr double kThreadShare = 0.1;
+/// A face is split between regions when the smaller share of its area is more than this.
+constexpr double kSplit = 0.1;
 
 double diagonal_of(const std::vector<Vector3d>& points) {
   Eigen::AlignedBox3d box;
@@ -103,6 +105,23 @@ void gather_pieces(const FaceGraph& graph, const std::vector<int>& labels, const
     if (most != shares.end()) out.labels[f] = most->first;
     if (area > 0) out.diameters[f] = sum / area;
   }
+}
+
+/// Whether an outer face reaches over several regions. Walls of bores, which run through several bodies, are no outer
+/// ones.
+bool is_face_split(const FaceGraph& pieces, const std::vector<char>& outer, const std::vector<int>& labels,
+                   std::size_t face_count) {
+  std::vector<int> first(face_count, -1);
+  std::vector<double> same(face_count, 0.0), other(face_count, 0.0);
+  for (int f = 0; f < pieces.size(); ++f) {
+    if (!outer[f]) continue;
+    int& known = first[pieces.parents[f]];
+    if (known < 0) known = labels[f];
+    (known == labels[f] ? same : other)[pieces.parents[f]] += pieces.areas[f];
+  }
+  for (std::size_t f = 0; f < face_count; ++f)
+    if (std::min(same[f], other[f]) > kSplit * (same[f] + other[f])) return true;
+  return false;
 }
 
 /// Joins the regions that whole faces have once more: where faces are much longer than their pieces, one that reaches
@@ -233,7 +252,7 @@ MeshSegmentation segment_mesh(const TriangleMesh& mesh, const MeshSegmentationOp
   if (monitor.stopped()) return stopped();
   for (int& label : regions.labels) label = std::max(label, 0);
   gather_pieces(graph, regions.labels, diameters, mesh.triangles.size(), out);
-  if (graph.faces.size() > smooth.triangles.size())
+  if (is_face_split(graph, regions.outer, regions.labels, smooth.triangles.size()))
     join_whole_faces(smooth, thread_normals, graph, regions.outer, options.min_size * diagonal, options.convexity,
                      out.labels);
   list_segments(mesh, diagonal, out);

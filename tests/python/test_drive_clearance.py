@@ -91,7 +91,7 @@ def test_one_that_is_too_large_is_told_with_one_that_works(roomy: dict[str, Any]
     assert made.outcome == mg.Outcome.not_found
     [told] = [o for o in made.obstructions if o.stage == "route"]
     words, advised = told.message.rsplit("drive_clearance: ", 1)
-    assert "keeps drive_clearance: there is one with" in words
+    assert "that keeps drive_clearance: there is one with" in words
     assert 0 < float(advised) < 0.8
     again = mg.plan_part_supply(write(gate | {"drive_clearance": float(advised)}))
     assert again.outcome == mg.Outcome.solved

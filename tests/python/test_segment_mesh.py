@@ -11,6 +11,7 @@ import pytest
 import mmgrasp as mg
 from composed_parts import Part, composed_parts, cylinder, faces_right, screw, stepped_shaft
 from conftest import REPOSITORY
+from mmgrasp.grippers.turned_parts import turned
 
 DATA = REPOSITORY.parent / "shared" / "data" / "meshes"
 EDGE = 2.0  # of the meshes [mm]
@@ -213,26 +214,12 @@ def test_bad_input() -> None:
         mg.grasping.segment_mesh(mesh, smooting=1)  # type: ignore[call-arg]
 
 
-def turned_body(profile: list[tuple[float, float]], sides: int) -> tuple[np.ndarray, np.ndarray]:
-    """A closed profile (radius, height) turned about z, as vertices and triangles."""
-    turns = 2 * np.pi * np.arange(sides) / sides
-    vertices = [[r * np.cos(a), r * np.sin(a), z] for r, z in profile for a in turns]
-    triangles = []
-    for row in range(len(profile)):
-        low, high = row * sides, (row + 1) % len(profile) * sides
-        for s in range(sides):
-            n = (s + 1) % sides
-            triangles += [[low + s, low + n, high + n], [low + s, high + n, high + s]]
-    return np.array(vertices), np.array(triangles)
-
-
 def test_the_search_for_threads_ends() -> None:
     """A bearing's seat of 24 sides about y: the winding of its edges, refined, is faster than what was asked for."""
     bend = [(5.0, 3.5), (4.93, 3.25), (4.75, 3.07), (4.5, 3.0)]
     profile = [(2.25, 0.0), (6.5, 0.0), (7.0, 0.5), (7.0, 4.7), (6.7, 5.0), (5.3, 5.0), (5.0, 4.7), *bend, (2.25, 3.0)]
-    vertices, triangles = turned_body(profile, 24)
-    lying = vertices[:, [2, 1, 0]] * [1, 1, -1]
-    mesh = mg.Mesh.from_arrays(1e-3 * lying, triangles)
+    upright = turned(1e-3 * np.array(profile), 24)
+    mesh = mg.Mesh.from_arrays(np.array(upright.vertices)[:, [2, 1, 0]] * [1, 1, -1], upright.triangles)
     cut = mg.grasping.segment_mesh(mesh)
     kinds = {(fit.kind, round(1e3 * fit.size[0], 2)) for fit in mg.grasping.fit_primitives(mesh, cut.labels)}
     assert ("cylinder", 14.0) in kinds

@@ -53,6 +53,7 @@ class StopOrdering {
       for (int j = n_ + 1; j >= 0; --j) {
         const int from = i < 0 ? n_ : i;
         if (from == j || j == n_ || std::isfinite(lengths_(from, j))) continue;
+        if (i < 0 && j == n_ + 1 && n_ > 0) continue;  // no order drives from start to goal at once
         none.from = i;
         none.unreachable = j == n_ + 1 ? -1 : j;
       }

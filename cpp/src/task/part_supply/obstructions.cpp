@@ -46,8 +46,11 @@ Obstruction explain_route(const Eigen::Vector3d& from, bool from_stop, const Eig
   obstruction.tray = tray;
   const std::string cells = searched.cell > 0 ? " in cells of " + six_digits(searched.cell) + " m" : "";
   if (smaller_clearance >= 0) {
-    obstruction.message = "no drive from " + ends_of_drive(from, from_stop, " to ", to, tray) +
-                          " keeps drive_clearance: there is one with drive_clearance: " + six_digits(smaller_clearance);
+    const bool gave_up = searched.outcome == Outcome::timeout;
+    obstruction.message =
+        (gave_up ? "the search gave up before it found a drive from " : "no drive was found from ") +
+        ends_of_drive(from, from_stop, " to ", to, tray) +
+        " that keeps drive_clearance: there is one with drive_clearance: " + six_digits(smaller_clearance);
   } else if (searched.outcome == Outcome::timeout) {
     obstruction.message = "the search for a drive from " + ends_of_drive(from, from_stop, " to ", to, tray) +
                           " gave up" + cells +

@@ -88,21 +88,12 @@ Solid mesh_solid(const std::shared_ptr<const TriangleMesh>& mesh, const Pose& T)
   return solid;
 }
 
-/// `faces`: box_faces() of the size.
+/// `faces`: the triangles of the box.
 Solid box_solid(std::shared_ptr<fcl::Boxd> box, std::shared_ptr<const BvhModel> faces, const Pose& T) {
   const Eigen::Vector3d size = box->side;
   Solid solid = primitive(std::move(box), T, centred(size));
   solid.faces = std::move(faces);
   return solid;
-}
-
-std::shared_ptr<const BvhModel> box_faces(const Eigen::Vector3d& size) {
-  TriangleMesh mesh;
-  const Bounds box = centred(size);
-  for (int i = 0; i < 8; ++i) mesh.vertices.push_back(box.corner(static_cast<Bounds::CornerType>(i)));
-  mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                    {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-  return bvh(mesh);
 }
 
 Solid plane_solid(const Plane& plane, const Pose& T) {
@@ -117,7 +108,7 @@ void add_solids(const LinkShape& item, std::vector<Solid>& out) {
   const Pose& T = item.T_link_shape;
   std::visit(
       Overloaded{
-          [&](const Box& s) { out.push_back(box_solid(std::make_shared<fcl::Boxd>(s.size), box_faces(s.size), T)); },
+          [&](const Box& s) { out.push_back(box_solid(std::make_shared<fcl::Boxd>(s.size), bvh(*shape_mesh(s)), T)); },
           [&](const Sphere& s) {
             out.push_back(primitive(std::make_shared<fcl::Sphered>(s.radius), T,
                                     centred(Eigen::Vector3d::Constant(2 * s.radius))));
@@ -135,7 +126,7 @@ void add_solids(const LinkShape& item, std::vector<Solid>& out) {
           [&](const Voxels& s) {
             const Eigen::Vector3d size = Eigen::Vector3d::Constant(s.resolution);
             const auto box = std::make_shared<fcl::Boxd>(size);
-            const auto faces = box_faces(size);
+            const auto faces = bvh(*shape_mesh(Box{size}));
             for (const Eigen::Vector3d& centre : *s.centres)
               out.push_back(box_solid(box, faces, T * Eigen::Translation3d(centre)));
           },

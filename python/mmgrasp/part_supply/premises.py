@@ -6,6 +6,9 @@ import math
 from typing import Any, NotRequired, TypedDict
 
 
+_POSTURES_OF_PART = 128  # tried at a part at least, whatever the number of its grasps
+
+
 class Premises(TypedDict):
     """What a proven least number of stops holds for: the section `premises` of plan.json (docs/plan_format.md)."""
 
@@ -15,7 +18,7 @@ class Premises(TypedDict):
     cell: float  # edge of the base grid's cells [m]
     max_distance: float  # of cells from the tray's middle [m]; 0: as far as the arm reaches
     grasps: int  # of all parts
-    ik_seeds: int  # configurations of the database refined for each grasp and base pose
+    ik_seeds: int  # configurations of the database refined for each grasp and base pose: more than asked for where a part has few grasps
     database: dict[str, Any]  # options of the reachability database, as the scenario has them
     search_finished: bool  # the proof was
     chosen_parts: NotRequired[
@@ -35,11 +38,17 @@ def premises(plan: dict[str, Any]) -> Premises:
         "cell": plan["grid"]["resolution"],
         "max_distance": options.get("grid_max_distance", 0.0),
         "grasps": sum(len(part["grasps"]) for part in scenario["parts"]),
-        "ik_seeds": options.get("ik_seeds", 0),
+        "ik_seeds": _ik_seeds_of_a_grasp(options.get("ik_seeds", 0), scenario["parts"]),
         "database": dict(reach),
         "search_finished": plan["proven_minimal"],
     }
     return {**known, "chosen_parts": chosen} if chosen else known
+
+
+def _ik_seeds_of_a_grasp(asked: int, parts: list[dict[str, Any]]) -> int:
+    """How many configurations were refined for each grasp; 0: the plan does not say."""
+    fewest = min((len(part["grasps"]) for part in parts if part["grasps"]), default=_POSTURES_OF_PART)
+    return max(asked, math.ceil(_POSTURES_OF_PART / fewest)) if asked else 0
 
 
 def premises_text(said: Premises) -> str:

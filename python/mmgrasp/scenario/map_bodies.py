@@ -18,6 +18,7 @@ AROUND = 0.006  # around an object's rectangle, within which the surface is its 
 ABOVE = 0.02  # above an object's box, up to which it is looked for [m]
 _LONGEST = 300  # columns along a side; of larger objects they are wider
 LEAST_PIECE = 50  # vertices; smaller pieces of surface are noise that hangs in the air
+_MOST_CELLS = 5_000_000  # looked at around the points of a surface, where they overlap several times
 _MOST_BOXES = 3000  # of the rest; its cells are made larger until there are no more
 
 
@@ -134,8 +135,7 @@ def large_pieces(triangles: np.ndarray, kept: np.ndarray) -> np.ndarray:
 
 def cells_around(points: np.ndarray, radii: np.ndarray, edge: float) -> np.ndarray:
     """(n, 3) indices of the cells of an edge [m] whose middle is within the radius (m,) and a cell of a point (m, 3), each once."""
-    homes = np.floor(points / edge).astype(np.int64)
-    reach = np.ceil(radii / edge).astype(np.int64)
+    homes, reach = _homes(points, radii, edge)
     parts = [np.zeros((0, 3), dtype=np.int64)]
     for k in np.unique(reach):
         span = range(-int(k), int(k) + 1)
@@ -145,6 +145,24 @@ def cells_around(points: np.ndarray, radii: np.ndarray, edge: float) -> np.ndarr
         own = np.unique(homes[reach == k], axis=0)
         parts.append(np.unique((own[:, None] + sphere[None]).reshape(-1, 3), axis=0))
     return np.unique(np.concatenate(parts), axis=0)
+
+
+def edge_for(points: np.ndarray, radii: np.ndarray, edge: float) -> float:
+    """The edge, or twice, four times, ... the edge [m], with which cells_around() looks at no more than _MOST_CELLS."""
+    while _looked_at(points, radii, edge) > _MOST_CELLS:
+        edge *= 2
+    return edge
+
+
+def _looked_at(points: np.ndarray, radii: np.ndarray, edge: float) -> int:
+    homes, reach = _homes(points, radii, edge)
+    cells = np.unique(np.column_stack([homes, reach]), axis=0)
+    return int(((2 * cells[:, 3] + 1) ** 3).sum())
+
+
+def _homes(points: np.ndarray, radii: np.ndarray, edge: float) -> tuple[np.ndarray, np.ndarray]:
+    """The cells of points (m, 3) of an edge [m], and how many cells away from each others are within its radius (m,)."""
+    return np.floor(points / edge).astype(np.int64), np.ceil(radii / edge).astype(np.int64)
 
 
 def cell_boxes(cells: np.ndarray, edge: float) -> list[LinkShape]:

@@ -19,7 +19,7 @@ from .._progress import Progress, is_callers
 from ..documents.reading import Node
 from ..scan.map_folder import MAP, TrayObject, load_map, objects_in_tray
 from ..scan.rendered import Tour, rendered_map
-from .map_bodies import Footprint, cell_boxes, cells_around, inside_boxes, large_pieces, object_boxes
+from .map_bodies import Footprint, cell_boxes, cells_around, edge_for, inside_boxes, large_pieces, object_boxes
 
 SIGMAS = 2.0
 SAMPLES, MOST_GRASPS = 800, 40
@@ -141,8 +141,9 @@ class ScanReader:
             left = large_pieces(mesh.triangles, left)
             if left.any():
                 radii = np.minimum(made.sigmas * sigma[left], made.sdf.truncation)
-                cells = cells_around(mesh.vertices[left], radii, made.sdf.voxel)
-                out.append((f"scan {made.tray}", cell_boxes(cells, made.sdf.voxel)))
+                points = mesh.vertices[left]
+                edge = edge_for(points, radii, made.sdf.voxel)
+                out.append((f"scan {made.tray}", cell_boxes(cells_around(points, radii, edge), edge)))
         return out
 
     def _load(self, node: Node, folder: Path, tray: str, sigmas: float) -> _LoadedMap:

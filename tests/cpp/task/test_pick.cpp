@@ -145,7 +145,7 @@ TEST(Pick, APartOfATrayIsAnObjectLikeAnother) {
   for (const Tray& tray : room.trays)
     alone.world.add(tray.parts[0].name, WorldObject{tray.parts[0].shapes, tray.parts[0].T_world_part});
   alone.options = {room.options.approach_distance, room.options.lift_height, room.options.motion_time_limit,
-                   room.options.grid.ik_seeds, room.options.seed * 1000003u};
+                   detail::ik_seeds_of_a_grasp(room), room.options.seed * 1000003u};
   const Pick kept = plan_object_pick(alone, database());
   ASSERT_EQ(kept.outcome, Outcome::solved);
   ASSERT_EQ(kept.grasp, from_tray.grasp);

@@ -52,7 +52,9 @@ struct MMGRASP_EXPORT BaseGridOptions {
   double resolution = 0.05;  ///< Cell edge [m]; > 0.
   double max_distance =
       0.0;  ///< Cells whose centre is farther than this from the tray's middle are not tried [m]; 0: the arm's reach.
-  int ik_seeds = 8;  ///< Database configurations refined for each grasp and base pose; > 0.
+  /// Database configurations refined for each grasp and base pose; > 0. More are where a part has so few grasps that
+  /// they would make fewer than 128 postures.
+  int ik_seeds = 8;
 };
 
 /// What a part-supply plan must allow for (an imprecise base, straight moves at a part), and the budgets of its stages.

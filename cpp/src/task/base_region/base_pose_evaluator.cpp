@@ -55,7 +55,7 @@ BasePoseEvaluator::BasePoseEvaluator(const PartSupplyProblem& problem, const Rea
   const std::string difference = database.difference(problem.arm);
   if (!difference.empty()) throw InvalidInput("database: was built for another arm than the problem's: " + difference);
   const JointGroup arm = problem.arm.at(Pose::Identity());
-  auto seeds = std::make_shared<const detail::IkSeedGrid>(arm, database, problem.options.grid.ik_seeds);
+  auto seeds = std::make_shared<const detail::IkSeedGrid>(arm, database, detail::ik_seeds_of_a_grasp(problem));
   std::vector<PartRef> parts = detail::all_parts(problem);
   const World world = detail::world_with_parts(problem, parts);
   impl_ = Impl::make({&problem, arm, std::move(seeds), detail::GraspTable(problem)}, database, std::move(parts), world);

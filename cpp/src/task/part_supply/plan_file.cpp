@@ -8,6 +8,7 @@
 #include "mmgrasp/task/plan_to_check.hpp"
 #include "task/part_supply/json_text.hpp"
 #include "task/part_supply/scenario_json.hpp"
+#include "task/problem/scene.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -176,7 +177,7 @@ std::string premises_json(const PartSupplyProblem& problem, const ReachDatabase&
                       {"cell", json_number(plan.grid.resolution)},
                       {"max_distance", json_number(problem.options.grid.max_distance)},
                       {"grasps", count(grasps)},
-                      {"ik_seeds", std::to_string(problem.options.grid.ik_seeds)},
+                      {"ik_seeds", std::to_string(detail::ik_seeds_of_a_grasp(problem))},
                       {"database", detail::reach_json(database)},
                       {"search_finished", json_bool(plan.proven_minimal)}});
 }

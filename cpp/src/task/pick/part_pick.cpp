@@ -38,7 +38,8 @@ PickProblem pick_of(const PartSupplyProblem& problem, const Eigen::Vector3d& bas
           part.grasps,
           problem.home,
           places_over_bin(problem.place_region, T_world_root, part),
-          {options.approach_distance, options.lift_height, options.motion_time_limit, options.grid.ik_seeds, seed},
+          {options.approach_distance, options.lift_height, options.motion_time_limit, ik_seeds_of_a_grasp(problem),
+           seed},
           part.mass};
 }
 

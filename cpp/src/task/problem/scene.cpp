@@ -28,6 +28,16 @@ std::vector<PartRef> target_parts(const PartSupplyProblem& problem, TrayId tray)
   return targets;
 }
 
+int ik_seeds_of_a_grasp(const PartSupplyProblem& problem) {
+  int fewest = kPosturesOfPart;
+  for (const Tray& tray : problem.trays) {
+    for (const Part& part : tray.parts) {
+      if (part.target && !part.grasps.empty()) fewest = std::min(fewest, static_cast<int>(part.grasps.size()));
+    }
+  }
+  return std::max(problem.options.grid.ik_seeds, (kPosturesOfPart + fewest - 1) / fewest);
+}
+
 World world_with_parts(const PartSupplyProblem& problem, const std::vector<PartRef>& parts) {
   World world = problem.world;
   // A checker refuses pairs that name a part which is not there.

@@ -45,7 +45,8 @@ std::string shown(double value) {
 SegmentRequirement make_requirement(const Given<std::string>& part, const Given<double>& opening,
                                     const Given<std::string>& segment, const Given<int>& fingers,
                                     const Given<double>& shortest, const std::optional<Given<double>>& longest,
-                                    const Given<double>& clearance, const Given<double>& least_closed) {
+                                    const Given<double>& clearance, const Given<double>& least_closed,
+                                    const std::optional<Given<double>>& longest_stroke) {
   const SegmentRequirement requirement{taken(part, "part"),
                                        taken(segment, "segment"),
                                        taken(fingers, "fingers"),
@@ -53,7 +54,8 @@ SegmentRequirement make_requirement(const Given<std::string>& part, const Given<
                                        taken(shortest, "min_finger_length"),
                                        or_infinite(longest, "max_finger_length"),
                                        taken(clearance, "clearance"),
-                                       taken(least_closed, "least_min_opening")};
+                                       taken(least_closed, "least_min_opening"),
+                                       or_infinite(longest_stroke, "max_stroke")};
   requirement.check();
   return requirement;
 }
@@ -73,9 +75,10 @@ void bind_requirement(py::module_& m) {
       "    SegmentRequirement(\"sleeve\", 0.0375, fingers=3, min_finger_length=0.0227)")
       .def(py::init(&make_requirement), "part"_a, "opening"_a, py::kw_only(), "segment"_a = "", "fingers"_a = 2,
            "min_finger_length"_a = 0.0, "max_finger_length"_a = py::none(), "clearance"_a = 0.0,
-           "least_min_opening"_a = 0.0,
+           "least_min_opening"_a = 0.0, "max_stroke"_a = py::none(),
            "Part, opening [m], the segment's label, 2 or 3 fingers, limits of their length [m] (None: no upper one), "
-           "how far each finger opens to let go [m], how far the gripper may close [m].")
+           "how far each finger opens to let go [m], how far the gripper may close [m], the longest stroke of its drive "
+           "[m] (None: any).")
       .def_readonly("part", &R::part, "Whose segment it is.")
       .def_readonly("segment", &R::segment, "Its label.")
       .def_readonly("fingers", &R::fingers, "2: parallel jaws; 3: centric fingers.")
@@ -89,6 +92,9 @@ void bind_requirement(py::module_& m) {
       .def_readonly("least_min_opening", &R::least_min_opening,
                     "The gripper's smallest opening is no less [m]: centric fingers that close farther have pads too "
                     "narrow to hold it.")
+      .def_property_readonly(
+          "max_stroke", [](const R& r) { return OptionalNumber(or_none(r.max_stroke)); },
+          "The drive's stroke is no more [m]: a longer one has a wider palm, or opens farther to let go; None: any.")
       .def("__repr__", [](const R& r) {
         return "SegmentRequirement(" + r.name() + ", " + std::to_string(r.fingers) + " fingers, opening " +
                shown(r.opening) + ")";

@@ -36,12 +36,6 @@ class Advice {
     return can_be_done(by(by_.options, actuators), monitor_);
   }
 
-  std::vector<GripperActuator> without(int fingers) const {
-    std::vector<GripperActuator> out = by_.actuators;
-    out.erase(std::remove_if(out.begin(), out.end(), [&](const auto& a) { return a.fingers == fingers; }), out.end());
-    return out;
-  }
-
   /// An option of another value, where that is no nonsense and helps.
   void try_option(double PlanGrippersOptions::*option, double value, const std::string& text) {
     if (value < 0) return;
@@ -84,13 +78,12 @@ std::vector<GripperActuator> with(std::vector<GripperActuator> drives, const Gri
 }
 
 /// Whether neither a slightly shorter stroke nor a slightly narrower opening would do.
-bool is_least(const Advice& advice, const GripperActuator& drive) {
+bool is_least(const Judgement& by, const Advice& advice, const GripperActuator& drive) {
   GripperActuator shorter = drive, narrower = drive;
   shorter.stroke -= kSlightly;
   narrower.max_opening -= kSlightly;
-  const std::vector<GripperActuator> others = advice.without(drive.fingers);
-  return !(shorter.stroke > 0 && advice.helps(with(others, shorter))) &&
-         !(narrower.max_opening >= narrower.stroke && advice.helps(with(others, narrower)));
+  return !(shorter.stroke > 0 && advice.helps(with(by.actuators, shorter))) &&
+         !(narrower.max_opening >= narrower.stroke && advice.helps(with(by.actuators, narrower)));
 }
 
 void advise_drives(const Judgement& by, const Remedy& remedy, Advice& advice) {
@@ -100,11 +93,9 @@ void advise_drives(const Judgement& by, const Remedy& remedy, Advice& advice) {
   }
   for (const auto& [fingers, narrowest] : remedy.short_drives) {
     const GripperActuator drive = as_printed(narrowest);
-    const std::vector<GripperActuator> others = advice.without(fingers);
-    if (!advice.helps(with(others, drive))) continue;
+    if (!advice.helps(with(by.actuators, drive))) continue;
     std::string text = text_of(drive);
-    if (others.size() < by.actuators.size()) text += ", in place of those " + of_fingers(fingers);
-    if (is_least(advice, drive)) text += ", the least";
+    if (is_least(by, advice, drive)) text += ", the least";
     advice.say(text + ": its fingers open by " + printed(kept_clearance({drive}, by.options)) + ", not by " +
                printed(by.options.clearance));
   }
@@ -190,13 +181,9 @@ std::vector<std::string> advice_without_drive(const Judgement& by, const Monitor
   using O = PlanGrippersOptions;
   Advice advice(by, monitor);
   advise_strokes(by, advice);
-  std::vector<double> margins, clearances;
-  for (const GripperActuator& a : by.actuators) {
-    margins.push_back(hundredths_down(a.stroke / 2));
-    clearances.push_back(hundredths_down((a.stroke - by.options.opening_margin) / 2));
-  }
+  std::vector<double> margins;
+  for (const GripperActuator& a : by.actuators) margins.push_back(hundredths_down(a.stroke / 2));
   advise_less(by, &O::opening_margin, "opening_margin = ", margins, advice);
-  advise_less(by, &O::clearance, "clearance = ", clearances, advice);
   return advice.said();
 }
 

@@ -205,6 +205,7 @@ bool Gripper::holds(const SegmentRequirement& requirement) const {
   using detail::at_most;
   return requirement.fingers == fingers && at_most(min_opening, requirement.opening) &&
          at_most(requirement.least_min_opening, min_opening) && at_most(requirement.opening, max_opening) &&
+         at_most(max_opening - min_opening, requirement.max_stroke) &&
          at_most(requirement.min_finger_length, finger_length) && at_most(finger_length, requirement.max_finger_length);
 }
 

@@ -219,6 +219,7 @@ void check_actuators(const std::vector<GripperActuator>& actuators) {
 
 bool RequiredRange::can_be_met(const GripperActuator& actuator) const {
   return at_most(highest, actuator.max_opening) && at_most(highest - lowest, actuator.stroke) &&
+         at_most(actuator.stroke, longest_stroke) &&
          at_most(shortest, longest) && at_most(least_closed, std::min(lowest, actuator.max_opening - actuator.stroke));
 }
 
@@ -227,6 +228,7 @@ RequiredRange required_range(const SegmentRequirement& requirement, const Minima
   range.lowest = std::max(0.0, requirement.opening - options.opening_margin);
   range.highest = requirement.opening + std::max(options.opening_margin, 2 * requirement.clearance);
   range.least_closed = requirement.least_min_opening;
+  range.longest_stroke = requirement.max_stroke;
   range.shortest = std::max(options.shortest_finger, requirement.min_finger_length + options.length_margin);
   range.longest = std::min(options.longest_finger, requirement.max_finger_length - options.length_margin);
   return range;

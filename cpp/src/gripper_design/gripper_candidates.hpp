@@ -16,6 +16,7 @@ void check_actuators(const std::vector<GripperActuator>& actuators);
 struct RequiredRange {
   double lowest = 0, highest = 0;    ///< Both openings lie within the gripper's [m].
   double least_closed = 0;           ///< The gripper's smallest opening is no less [m].
+  double longest_stroke = 0;         ///< The drive's stroke is no more [m].
   double shortest = 0, longest = 0;  ///< The finger's length lies between them [m].
   bool can_be_met(const GripperActuator& actuator) const;
 };

@@ -44,12 +44,17 @@ std::string refusal(const SegmentRequirement& requirement, const std::vector<Gri
            (options.length_margin > 0 ? " with length_margin = " + exactly(options.length_margin) : "");
   }
   double widest = 0, longest_stroke = 0;
+  bool has_fingers = false;
   for (const GripperActuator& a : actuators) {
     if (a.fingers != requirement.fingers) continue;
+    has_fingers = true;
+    if (!at_most(a.stroke, range.longest_stroke)) continue;
     widest = std::max(widest, a.max_opening);
     longest_stroke = std::max(longest_stroke, a.stroke);
   }
-  if (widest == 0) return "no actuator has " + fingers;
+  if (!has_fingers) return "no actuator has " + fingers;
+  if (widest == 0)
+    return "actuators with " + fingers + " have strokes longer than its max_stroke = " + exactly(range.longest_stroke);
   if (!at_most(range.highest, widest))
     return "it is " + exactly(requirement.opening) + " wide" +
            (range.highest > requirement.opening ? " and asks for an opening of " + exactly(range.highest) : "") +

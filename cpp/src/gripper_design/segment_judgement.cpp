@@ -25,6 +25,21 @@ constexpr double kOpeningStep = 1e-6;   // [m]
 constexpr double kLeastPad = 1e-6;      // Narrower ones are edges [m].
 constexpr double kLeastContact = 5e-4;  // Thinner segments are not told to be held by less contact [m].
 
+bool is_shorter(const GripperActuator& a, const GripperActuator& b) {
+  return a.stroke < b.stroke;
+}
+
+/// Drives with so many fingers, in groups of one stroke.
+std::vector<std::vector<GripperActuator>> by_stroke(std::vector<GripperActuator> drives) {
+  std::stable_sort(drives.begin(), drives.end(), is_shorter);
+  std::vector<std::vector<GripperActuator>> out;
+  for (const GripperActuator& a : drives) {
+    if (out.empty() || !at_most(a.stroke, out.back().front().stroke)) out.emplace_back();
+    out.back().push_back(a);
+  }
+  return out;
+}
+
 std::vector<GripperActuator> with_fingers(const std::vector<GripperActuator>& actuators, int fingers) {
   std::vector<GripperActuator> out;
   for (const GripperActuator& a : actuators)
@@ -113,7 +128,8 @@ Tried try_grasp(const Judgement& by, const AssemblyGrasp& grasp, const SurfacePi
 bool held_by_another(const FreeGrasp& f, const FreeGrasp& other) {
   return std::abs(other.grasp.opening - f.grasp.opening) < kSameOpening &&
          other.lengths.shortest <= f.lengths.shortest && other.lengths.longest >= f.lengths.longest &&
-         other.least_min_opening <= f.least_min_opening && other.rank <= f.rank;
+         other.least_min_opening <= f.least_min_opening && other.rank <= f.rank &&
+         other.max_stroke >= f.max_stroke && other.grasp.clearance <= f.grasp.clearance;
 }
 
 /// One segment of a part that an operation moves.
@@ -123,10 +139,6 @@ struct SegmentToHold {
   const FittedPrimitive& primitive;
   int fingers = 0;         // 2, 3, or 0: none suit it.
   SurfacePieces keep_off;  // Seen from the active subassembly.
-  std::vector<AssemblyGrasp> grasps(const std::vector<GripperActuator>& drives,
-                                    const PlanGrippersOptions& options) const {
-    return assembly_grasps(part, segment, primitive, drives, options);
-  }
 };
 
 SegmentToHold segment_to_hold(const Judgement& by, const PlacedMesh& part, int number) {
@@ -173,13 +185,24 @@ void note_remedies(const std::vector<Tried>& all, Remedy& remedy) {
   }
 }
 
-std::vector<Tried> try_all(const Judgement& by, const std::vector<AssemblyGrasp>& grasps, const SurfacePieces& keep_off,
-                           const Monitor& monitor) {
-  std::vector<Tried> out(grasps.size());
+/// Tries the grasps of a segment by drives of each stroke: how far fingers open and how wide the palm is hang on it, and
+/// a drive must not be judged by what a longer one at hand would do. Returns nothing once stopped.
+std::vector<Tried> try_all(const Judgement& by, const SegmentToHold& segment,
+                           const std::vector<GripperActuator>& drives, const Monitor& monitor) {
+  std::vector<Tried> out;
   Monitor silent;
   silent.stop = monitor.stop;
-  const auto work = [&](std::size_t i, int) { out[i] = try_grasp(by, grasps[i], keep_off); };
-  if (!parallel_for(grasps.size(), by.options.threads, work, silent)) out.clear();
+  for (const std::vector<GripperActuator>& alike : by_stroke(drives)) {
+    const std::vector<AssemblyGrasp> grasps =
+        assembly_grasps(segment.part, segment.segment, segment.primitive, alike, by.options);
+    std::vector<Tried> tried(grasps.size());
+    const auto work = [&](std::size_t i, int) {
+      tried[i] = try_grasp(by, grasps[i], segment.keep_off);
+      tried[i].found.max_stroke = alike.back().stroke;
+    };
+    if (!parallel_for(grasps.size(), by.options.threads, work, silent)) return {};
+    out.insert(out.end(), std::make_move_iterator(tried.begin()), std::make_move_iterator(tried.end()));
+  }
   return out;
 }
 
@@ -189,13 +212,13 @@ double longest_stroke(const std::vector<GripperActuator>& drives) {
   return out;
 }
 
-/// The narrowest drive of a stroke with which a grasp of a segment is free, beside others; none: no grasp is.
+/// The narrowest drive of a stroke with which a grasp of a segment is free; none: no grasp is.
 std::optional<GripperActuator> narrowest_drive(const Judgement& by, const SegmentToHold& segment, double stroke,
-                                               std::vector<GripperActuator> others, const Monitor& monitor) {
+                                               const Monitor& monitor) {
   GripperActuator drive{"", segment.fingers, stroke};
-  others.push_back(drive);
+  const std::vector<Tried> all = try_all(by, segment, {drive}, monitor);
   drive.max_opening = kInfinity;
-  for (const Tried& t : try_all(by, segment.grasps(others, by.options), segment.keep_off, monitor)) {
+  for (const Tried& t : all) {
     if (!t.fell_by.empty()) continue;
     const double above = kept_above(t.found.grasp.clearance, by.options.opening_margin);
     drive.max_opening = std::min(drive.max_opening, std::max(asked_opening(t.found.grasp) + above, stroke));
@@ -212,13 +235,12 @@ void note_drive(const std::optional<GripperActuator>& drive, std::map<int, Gripp
 }
 
 /// Drives, not at hand, by which a segment would be taken.
-void note_drives(const Judgement& by, const SegmentToHold& segment, const std::vector<GripperActuator>& at_hand,
-                 Remedy& remedy, const Monitor& monitor) {
+void note_drives(const Judgement& by, const SegmentToHold& segment, Remedy& remedy, const Monitor& monitor) {
   const double margin = by.options.opening_margin;
   const double whole = std::max(margin + kept_above(by.options.clearance, margin), kLeastStroke);
-  note_drive(narrowest_drive(by, segment, whole, at_hand, monitor), remedy.drives);
+  note_drive(narrowest_drive(by, segment, whole, monitor), remedy.drives);
   if (margin > 0 && 2 * margin < whole)
-    note_drive(narrowest_drive(by, segment, 2 * margin, {}, monitor), remedy.short_drives);
+    note_drive(narrowest_drive(by, segment, 2 * margin, monitor), remedy.short_drives);
 }
 
 /// Whether pads could be put at a segment if they need not overlap it by `min_contact`; by how much they then may is
@@ -227,11 +249,11 @@ bool too_thin(const Judgement& by, const SegmentToHold& segment, const std::vect
               Remedy& remedy, const Monitor& monitor) {
   PlanGrippersOptions thin = by.options;
   thin.min_contact = std::min(kLeastContact, by.options.min_contact);
-  const std::vector<AssemblyGrasp> grasps = segment.grasps(drives, thin);
   const Judgement judgement{by.operation, by.actuators, thin, by.load, by.parts, by.keep_off, by.untouchable};
-  for (const Tried& t : try_all(judgement, grasps, segment.keep_off, monitor))
+  const std::vector<Tried> all = try_all(judgement, segment, drives, monitor);
+  for (const Tried& t : all)
     if (t.fell_by.empty()) remedy.min_contact = std::max(remedy.min_contact, t.found.grasp.contact_length);
-  return !grasps.empty();
+  return !all.empty();
 }
 
 /// Why there is no grasp to try, and what would help.
@@ -239,7 +261,7 @@ std::string nothing_to_try(const Judgement& by, const SegmentToHold& segment,
                            const std::vector<GripperActuator>& drives, Remedy& remedy, const Monitor& monitor) {
   if (!drives.empty() && too_thin(by, segment, drives, remedy, monitor))
     return "too thin: pads would overlap it by less than min_contact = " + millimetres(by.options.min_contact);
-  note_drives(by, segment, drives, remedy, monitor);
+  note_drives(by, segment, remedy, monitor);
   if (drives.empty()) return "no actuator has " + std::to_string(segment.fingers) + " fingers";
   return segment.fingers == 2 ? "no pair of opposite faces that an actuator opens wide enough for"
                               : "wider than any actuator opens";
@@ -277,12 +299,14 @@ SegmentRequirement required_by(const FreeGrasp& found, const SegmentFate& fate) 
           found.lengths.shortest,
           found.lengths.longest,
           found.grasp.clearance,
-          found.least_min_opening};
+          found.least_min_opening,
+          found.max_stroke};
 }
 
 std::vector<FreeGrasp> undominated(std::vector<FreeGrasp> found) {
   const auto key = [](const FreeGrasp& f) {
-    return std::make_tuple(asked_opening(f.grasp), f.lengths.shortest, -f.lengths.longest, f.rank, f.least_min_opening);
+    return std::make_tuple(asked_opening(f.grasp), f.lengths.shortest, -f.lengths.longest, f.rank, f.least_min_opening,
+                           -f.max_stroke);
   };
   std::stable_sort(found.begin(), found.end(), [&](const auto& a, const auto& b) { return key(a) < key(b); });
   std::vector<FreeGrasp> kept;
@@ -306,7 +330,7 @@ std::vector<FreeGrasp> judge_segment(const Judgement& by, const PlacedMesh& part
   fate.refused = unsuited(by, segment, part.name, fate.segment);
   if (!fate.refused.empty()) return {};
   const std::vector<GripperActuator> drives = with_fingers(by.actuators, fate.fingers);
-  const std::vector<Tried> all = try_all(by, segment.grasps(drives, by.options), segment.keep_off, monitor);
+  const std::vector<Tried> all = try_all(by, segment, drives, monitor);
   fate.tried = static_cast<int>(all.size());
   std::vector<FreeGrasp> found = free_ones(all);
   fate.free = static_cast<int>(found.size());
@@ -327,7 +351,7 @@ bool can_be_done(const Judgement& by, const Monitor& monitor) {
       SegmentFate fate;
       fate.step = by.operation.name;
       fate.fingers = segment.fingers;
-      for (const FreeGrasp& f : free_ones(try_all(by, segment.grasps(drives, by.options), segment.keep_off, monitor))) {
+      for (const FreeGrasp& f : free_ones(try_all(by, segment, drives, monitor))) {
         const RequiredRange range = required_range(required_by(f, fate), asked);
         if (std::any_of(drives.begin(), drives.end(), [&](const auto& d) { return range.can_be_met(d); })) return true;
       }

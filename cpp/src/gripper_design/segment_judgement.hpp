@@ -23,6 +23,7 @@ struct FreeGrasp {
   HeldLoad held;
   GraspRank rank{};
   double least_min_opening = 0;            ///< As SegmentRequirement's.
+  double max_stroke = 0;                   ///< As SegmentRequirement's.
   std::vector<FreeGrasp> in_reserve = {};  ///< No better than it in any way: tried where its rehearsal meets something.
 };
 
@@ -31,8 +32,8 @@ struct Remedy {
   static constexpr double kNone = -1;
   double longest_finger = kNone, shortest_finger = kNone;  ///< A limit that would have to be this [m].
   double min_contact = kNone;                              ///< Pads would have to overlap by no more than this [m].
-  /// Drives that are not at hand, by number of fingers: those that open by the whole clearance beside the ones at
-  /// hand, and those of the shortest stroke in place of these. Each is the narrowest by which a segment was held.
+  /// Drives that are not at hand, by number of fingers: those that open by the whole clearance, and those of the
+  /// shortest stroke. Each is the narrowest by which a segment was held.
   std::map<int, GripperActuator> drives, short_drives;
 };
 

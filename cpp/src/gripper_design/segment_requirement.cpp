@@ -22,6 +22,7 @@ void SegmentRequirement::check() const {
   require_not_negative(clearance, "clearance" + of, "m");
   require_not_negative(least_min_opening, "least_min_opening" + of, "m");
   require(least_min_opening <= opening, "least_min_opening" + of, least_min_opening, "must be at most opening [m]");
+  require(max_stroke > 0, "max_stroke" + of, max_stroke, "must be positive [m]");
 }
 
 }  // namespace mmgrasp

@@ -92,6 +92,7 @@ def _requirement(requirement: SegmentRequirement, grasp: AssemblyGrasp) -> dict[
         "max_finger_length": requirement.max_finger_length,
         "clearance": requirement.clearance,
         "least_min_opening": requirement.least_min_opening,
+        "max_stroke": requirement.max_stroke,
         "T_assembly_tips": np.asarray(grasp.T_active_tool).tolist(),
     }
 

@@ -71,6 +71,7 @@ TEST(MinimalGrippers, EqualsTryingEverySet) {
         const double longest = rng.uniform() < 0.4 ? shortest + 0.001 * static_cast<double>(rng.index(30)) : kInfinite;
         requirements.push_back(segment(std::to_string(p), rng.uniform() < 0.6 ? 2 : 3, opening, shortest, longest));
         if (trial % 4 == 3) requirements.back().least_min_opening = rng.uniform(0, opening);
+        if (trial % 3 == 2 && rng.uniform() < 0.5) requirements.back().max_stroke = 0.02;
         if (trial % 7 == 2) requirements.back().clearance = 0.001 * ((p + s) % 3);  // unequal ones
       }
     }

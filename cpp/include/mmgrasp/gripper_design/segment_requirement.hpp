@@ -22,6 +22,8 @@ struct MMGRASP_EXPORT SegmentRequirement {
   /// The gripper's smallest opening is no less [m], in [0, opening]: centric fingers that close farther have pads too
   /// narrow to hold it.
   double least_min_opening = 0;
+  /// The drive's stroke is no more [m], > 0: a longer one has a wider palm, or opens farther to let go.
+  double max_stroke = std::numeric_limits<double>::infinity();
 
   void check() const;        ///< Throws InvalidInput naming part, segment, field, value and rule.
   std::string name() const;  ///< "part" or "part, segment".

@@ -114,6 +114,17 @@ def test_tips_that_end_short_of_everything_are_refused_at_their_line(
     load_assembly(file_of(fingers={"tip_clearance": 37}))
 
 
+def test_two_drives_of_one_name_are_refused_at_their_line(
+    tmp_path: Path, file_of: Callable[..., Path], capsys: pytest.CaptureFixture[str]
+) -> None:
+    drives = [{"name": "jaws", "fingers": 2, "stroke": 30}, {"name": "jaws", "fingers": 3, "stroke": 16}]
+    file = file_of(actuators=drives)
+    assert main(["grippers", str(file), "-o", str(tmp_path / "out")]) == 2
+    error = " ".join(capsys.readouterr().err.split())
+    lines = [i for i, text in enumerate(file.read_text().splitlines(), 1) if "name: jaws" in text]
+    assert f"key.yaml:{lines[1]}: actuators[1].name = jaws: is there twice: drives must have names" in error
+
+
 def test_operations_without_a_way_past_other_parts_are_told(file_of: Callable[..., Path]) -> None:
     parts = [*yaml.safe_load(file_of().read_text())["parts"], {"name": "lid", "box": [30, 12, 5]}]
     parts[-1]["pose"] = {"xyz": [0, 0, 22.5]}

@@ -162,7 +162,7 @@ def _read_assembly(root: Node, source: str) -> Assembly:
         source,
         parts,
         steps,
-        [_read_actuator(node, scale) for node in _filled(root["actuators"])],
+        _read_actuators(root["actuators"], scale),
         _read_fingers(root, scale, max(_size(parts[name].mesh) for step in steps for name in step.active)),
         _read_options(root, scale),
         unit,
@@ -374,6 +374,16 @@ def _read_length(node: Node, scale: float, *, may_be_zero: bool = False) -> floa
     if length > LARGEST_PART:
         node.fail(f"must be at most {LARGEST_PART / scale:g} ({LARGEST_PART:g} m), as parts for a gripper are")
     return length
+
+
+def _read_actuators(node: Node, scale: float) -> list[GripperActuator]:
+    drives: list[GripperActuator] = []
+    for entry in _filled(node):
+        drive = _read_actuator(entry, scale)
+        if any(drive.name == other.name for other in drives):
+            entry["name"].fail("is there twice: drives must have names of their own")
+        drives.append(drive)
+    return drives
 
 
 def _read_actuator(node: Node, scale: float) -> GripperActuator:

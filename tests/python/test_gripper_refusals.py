@@ -14,7 +14,7 @@ import yaml
 
 from mmgrasp.cli import main
 from mmgrasp.gripper_design import Gripper
-from mmgrasp.grippers import load_assembly, plan_grippers
+from mmgrasp.grippers import GripperPlan, load_assembly, plan_grippers
 from mmgrasp.viz.gripper_report import gripper_report_html
 
 HAIR = 0.005  # fingers pass the walls by this, but not once they are rehearsed, 0.02 mm off [mm]
@@ -95,11 +95,13 @@ def test_an_opening_as_wide_as_is_advised_is_taken(file_of: Callable[..., Path])
     parts = [{"name": "key", "box": [100, 110, 120]}]
     order = [{"part": "key", "from": {"xyz": [0, 0, 50]}}]
 
-    def planned(widest: float) -> bool:
+    def planned(widest: float) -> GripperPlan:
         drive = {"name": "jaws", "fingers": 2, "stroke": 30, "max_opening": widest}
-        return plan_grippers(load_assembly(file_of(parts=parts, order=order, actuators=[drive]))).solved
+        return plan_grippers(load_assembly(file_of(parts=parts, order=order, actuators=[drive])))
 
-    assert planned(104) and not planned(103.99)
+    assert planned(104).solved and not planned(103.99).solved
+    assert "opens as wide as it is, but not by what clearance and opening_margin ask" in planned(103.99).faults[0]
+    assert "no pair of opposite faces that an actuator opens wide enough for" in planned(99).faults[0]
 
 
 def test_tips_that_end_short_of_everything_are_refused_at_their_line(

@@ -256,6 +256,14 @@ bool too_thin(const Judgement& by, const SegmentToHold& segment, const std::vect
   return !all.empty();
 }
 
+/// Whether pads could be put at a segment by fingers that open no farther than it is wide.
+bool is_as_wide_as_a_drive(const Judgement& by, const SegmentToHold& segment,
+                           const std::vector<GripperActuator>& drives) {
+  PlanGrippersOptions bare = by.options;
+  bare.clearance = bare.opening_margin = 0;
+  return !assembly_grasps(segment.part, segment.segment, segment.primitive, drives, bare).empty();
+}
+
 /// Why there is no grasp to try, and what would help.
 std::string nothing_to_try(const Judgement& by, const SegmentToHold& segment,
                            const std::vector<GripperActuator>& drives, Remedy& remedy, const Monitor& monitor) {
@@ -263,6 +271,8 @@ std::string nothing_to_try(const Judgement& by, const SegmentToHold& segment,
     return "too thin: pads would overlap it by less than min_contact = " + millimetres(by.options.min_contact);
   note_drives(by, segment, remedy, monitor);
   if (drives.empty()) return "no actuator has " + std::to_string(segment.fingers) + " fingers";
+  if (is_as_wide_as_a_drive(by, segment, drives))
+    return "an actuator opens as wide as it is, but not by what clearance and opening_margin ask beyond";
   return segment.fingers == 2 ? "no pair of opposite faces that an actuator opens wide enough for"
                               : "wider than any actuator opens";
 }

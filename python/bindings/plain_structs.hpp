@@ -228,7 +228,7 @@ inline constexpr std::size_t kFields<SegmentFate> = 10;
 template <>
 inline constexpr std::size_t kFields<SegmentedPart> = 2;
 template <>
-inline constexpr std::size_t kFields<SegmentRequirement> = 8;
+inline constexpr std::size_t kFields<SegmentRequirement> = 9;
 template <>
 inline constexpr std::size_t kFields<ContactArea> = 3;
 template <>

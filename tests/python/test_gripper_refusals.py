@@ -124,7 +124,7 @@ def test_two_drives_of_one_name_are_refused_at_their_line(
     assert main(["grippers", str(file), "-o", str(tmp_path / "out")]) == 2
     error = " ".join(capsys.readouterr().err.split())
     lines = [i for i, text in enumerate(file.read_text().splitlines(), 1) if "name: jaws" in text]
-    assert f"key.yaml:{lines[1]}: actuators[1].name = jaws: is there twice: drives must have names" in error
+    assert f"key.yaml:{lines[1]}: actuators[1].name = 'jaws': is there twice: drives must have names" in error
 
 
 def test_operations_without_a_way_past_other_parts_are_told(file_of: Callable[..., Path]) -> None:

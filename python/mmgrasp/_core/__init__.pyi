@@ -3112,7 +3112,7 @@ class PartSupplyProblem:
         Keyword options:
             grid_resolution: float = 0.05  # cell edge of the base grid [m]
             grid_max_distance: float = 0.0  # cells farther from the tray's middle are not tried [m]; 0: the arm's reach
-            ik_seeds: int = 8  # database configurations refined for each grasp and base pose; arms with closed-form IK take all branches
+            ik_seeds: int = 8  # database configurations refined for each grasp and base pose, more where a part has fewer than 16 grasps; arms with closed-form IK take all branches
             positioning_uncertainty: float = 0.1  # radius of the disc in which the base may come to stand [m]
             approach_distance: float = 0.08  # straight move from pre-grasp to grasp [m]
             lift_height: float = 0.12  # straight upward move after closing [m]
@@ -6376,9 +6376,9 @@ class SegmentRequirement:
     
         SegmentRequirement("sleeve", 0.0375, fingers=3, min_finger_length=0.0227)
     """
-    def __init__(self, part: str, opening: float, *, segment: str = '', fingers: int = 2, min_finger_length: float = 0.0, max_finger_length: float | None = None, clearance: float = 0.0, least_min_opening: float = 0.0) -> None:
+    def __init__(self, part: str, opening: float, *, segment: str = '', fingers: int = 2, min_finger_length: float = 0.0, max_finger_length: float | None = None, clearance: float = 0.0, least_min_opening: float = 0.0, max_stroke: float | None = None) -> None:
         """
-        Part, opening [m], the segment's label, 2 or 3 fingers, limits of their length [m] (None: no upper one), how far each finger opens to let go [m], how far the gripper may close [m].
+        Part, opening [m], the segment's label, 2 or 3 fingers, limits of their length [m] (None: no upper one), how far each finger opens to let go [m], how far the gripper may close [m], the longest stroke of its drive [m] (None: any).
         """
     def __repr__(self) -> str:
         ...
@@ -6401,6 +6401,11 @@ class SegmentRequirement:
     def max_finger_length(self) -> float | None:
         """
         [m]; None: any.
+        """
+    @property
+    def max_stroke(self) -> float | None:
+        """
+        The drive's stroke is no more [m]: a longer one has a wider palm, or opens farther to let go; None: any.
         """
     @property
     def min_finger_length(self) -> float:

@@ -73,12 +73,13 @@ void bind_requirement(py::module_& m) {
       "What a gripper needs to hold one segment of a part in its operation: {F, W, L-, L+} of P1 5.3.4.\n\n"
       "A part with several graspable segments has several; a gripper that meets one of them takes the part.\n\n"
       "    SegmentRequirement(\"sleeve\", 0.0375, fingers=3, min_finger_length=0.0227)")
-      .def(py::init(&make_requirement), "part"_a, "opening"_a, py::kw_only(), "segment"_a = "", "fingers"_a = 2,
-           "min_finger_length"_a = 0.0, "max_finger_length"_a = py::none(), "clearance"_a = 0.0,
-           "least_min_opening"_a = 0.0, "max_stroke"_a = py::none(),
-           "Part, opening [m], the segment's label, 2 or 3 fingers, limits of their length [m] (None: no upper one), "
-           "how far each finger opens to let go [m], how far the gripper may close [m], the longest stroke of its drive "
-           "[m] (None: any).")
+      .def(
+          py::init(&make_requirement), "part"_a, "opening"_a, py::kw_only(), "segment"_a = "", "fingers"_a = 2,
+          "min_finger_length"_a = 0.0, "max_finger_length"_a = py::none(), "clearance"_a = 0.0,
+          "least_min_opening"_a = 0.0, "max_stroke"_a = py::none(),
+          "Part, opening [m], the segment's label, 2 or 3 fingers, limits of their length [m] (None: no upper one), "
+          "how far each finger opens to let go [m], how far the gripper may close [m], the longest stroke of its drive "
+          "[m] (None: any).")
       .def_readonly("part", &R::part, "Whose segment it is.")
       .def_readonly("segment", &R::segment, "Its label.")
       .def_readonly("fingers", &R::fingers, "2: parallel jaws; 3: centric fingers.")

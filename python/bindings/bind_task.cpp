@@ -23,10 +23,10 @@ const std::vector<OptionField<Options>>& supply_fields() {
                       "cell edge of the base grid [m]"),
       option<Options>("grid_max_distance", &Options::grid, &BaseGridOptions::max_distance,
                       "cells farther from the tray's middle are not tried [m]; 0: the arm's reach"),
-      option<Options>(
-          "ik_seeds", &Options::grid, &BaseGridOptions::ik_seeds,
-          "database configurations refined for each grasp and base pose, more where a part has fewer than 16 grasps; arms "
-          "with closed-form IK take all branches"),
+      option<Options>("ik_seeds", &Options::grid, &BaseGridOptions::ik_seeds,
+                      "database configurations refined for each grasp and base pose, more where a part has fewer than "
+                      "16 grasps; arms "
+                      "with closed-form IK take all branches"),
       option<Options>("positioning_uncertainty", &Options::positioning_uncertainty,
                       "radius of the disc in which the base may come to stand [m]"),
       option<Options>("approach_distance", &Options::approach_distance, "straight move from pre-grasp to grasp [m]"),

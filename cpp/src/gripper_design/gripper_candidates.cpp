@@ -219,8 +219,8 @@ void check_actuators(const std::vector<GripperActuator>& actuators) {
 
 bool RequiredRange::can_be_met(const GripperActuator& actuator) const {
   return at_most(highest, actuator.max_opening) && at_most(highest - lowest, actuator.stroke) &&
-         at_most(actuator.stroke, longest_stroke) &&
-         at_most(shortest, longest) && at_most(least_closed, std::min(lowest, actuator.max_opening - actuator.stroke));
+         at_most(actuator.stroke, longest_stroke) && at_most(shortest, longest) &&
+         at_most(least_closed, std::min(lowest, actuator.max_opening - actuator.stroke));
 }
 
 RequiredRange required_range(const SegmentRequirement& requirement, const MinimalGrippersOptions& options) {

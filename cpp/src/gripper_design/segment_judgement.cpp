@@ -128,8 +128,8 @@ Tried try_grasp(const Judgement& by, const AssemblyGrasp& grasp, const SurfacePi
 bool held_by_another(const FreeGrasp& f, const FreeGrasp& other) {
   return std::abs(other.grasp.opening - f.grasp.opening) < kSameOpening &&
          other.lengths.shortest <= f.lengths.shortest && other.lengths.longest >= f.lengths.longest &&
-         other.least_min_opening <= f.least_min_opening && other.rank <= f.rank &&
-         other.max_stroke >= f.max_stroke && other.grasp.clearance <= f.grasp.clearance;
+         other.least_min_opening <= f.least_min_opening && other.rank <= f.rank && other.max_stroke >= f.max_stroke &&
+         other.grasp.clearance <= f.grasp.clearance;
 }
 
 /// One segment of a part that an operation moves.
@@ -185,8 +185,8 @@ void note_remedies(const std::vector<Tried>& all, Remedy& remedy) {
   }
 }
 
-/// Tries the grasps of a segment by drives of each stroke: how far fingers open and how wide the palm is hang on it, and
-/// a drive must not be judged by what a longer one at hand would do. Returns nothing once stopped.
+/// Tries the grasps of a segment by drives of each stroke: how far fingers open and how wide the palm is hang on it,
+/// and a drive must not be judged by what a longer one at hand would do. Returns nothing once stopped.
 std::vector<Tried> try_all(const Judgement& by, const SegmentToHold& segment,
                            const std::vector<GripperActuator>& drives, const Monitor& monitor) {
   std::vector<Tried> out;

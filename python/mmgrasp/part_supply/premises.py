@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from typing import Any, NotRequired, TypedDict
 
-
 _POSTURES_OF_PART = 128  # tried at a part at least, whatever the number of its grasps
 
 

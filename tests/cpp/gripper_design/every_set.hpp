@@ -76,9 +76,10 @@ struct BruteForce {
   void add(const std::vector<SegmentRequirement>& requirements, const GripperActuator& a, double low, double length) {
     unsigned mask = 0;
     for (const auto& r : requirements) {
-      const bool holds = r.fingers == a.fingers && a.stroke <= r.max_stroke + 1e-9 && r.least_min_opening <= low + 1e-9 && low <= r.opening + 1e-9 &&
-                         r.opening + 2 * r.clearance <= low + a.stroke + 1e-9 && r.min_finger_length <= length &&
-                         length <= r.max_finger_length;
+      const bool holds = r.fingers == a.fingers && a.stroke <= r.max_stroke + 1e-9 &&
+                         r.least_min_opening <= low + 1e-9 && low <= r.opening + 1e-9 &&
+                         r.opening + 2 * r.clearance <= low + a.stroke + 1e-9 && r.min_finger_length <= length + 1e-9 &&
+                         length <= r.max_finger_length + 1e-9;
       if (holds) mask |= 1u << (std::find(parts.begin(), parts.end(), r.part) - parts.begin());
     }
     for (const auto& c : candidates) {

@@ -152,17 +152,17 @@ TEST(PlanGrippers, PalmsAreAsWideAsTheStrokeAsks) {
   // Walls 25 mm high and 24 mm off let the palm of a short drive in between them, and not that of a long one.
   const AssemblyOperation o = key_between_walls(0.024, 0.025);
   const GripperActuator shorter{"short", 2, 0.006}, longer{"long", 2, 0.2};
-  const auto length = [&](const std::vector<GripperActuator>& drives) {
-    const PlanGrippersResult found = plan_grippers({o}, drives);
-    EXPECT_EQ(found.outcome, Outcome::solved);
-    return found.set->grippers[0].finger_length;
-  };
-  const double alone = length({shorter});
-  EXPECT_GT(length({longer}), alone + 0.001);
-  PlanGrippersOptions options;
-  options.longest_finger = alone;
-  EXPECT_EQ(plan_grippers({o}, {longer}, {}, options).outcome, Outcome::not_found);
-  EXPECT_EQ(plan_grippers({o}, {longer, shorter}, {}, options).outcome, Outcome::solved);
+  const PlanGrippersResult alone = plan_grippers({o}, {shorter}), wide = plan_grippers({o}, {longer}),
+                           both = plan_grippers({o}, {longer, shorter});
+  ASSERT_EQ(both.outcome, Outcome::solved);
+  EXPECT_GT(wide.set->grippers[0].finger_length, alone.set->grippers[0].finger_length + 0.001);
+  for (const SegmentRequirement& asked : alone.requirements) {
+    const auto is_same = [&](const SegmentRequirement& r) {
+      return r.opening == asked.opening && r.min_finger_length == asked.min_finger_length &&
+             r.max_finger_length == asked.max_finger_length && r.max_stroke >= shorter.stroke;
+    };
+    EXPECT_TRUE(std::any_of(both.requirements.begin(), both.requirements.end(), is_same)) << asked.min_finger_length;
+  }
 }
 
 TEST(PlanGrippers, SlimmerFingersAreAdvisedWhereAGapIsTooNarrow) {

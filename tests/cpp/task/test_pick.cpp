@@ -7,6 +7,7 @@
 
 #include "mmgrasp/core/error.hpp"
 #include "support/small_storeroom.hpp"
+#include "task/problem/scene.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -129,6 +130,25 @@ TEST(Pick, BadInputIsRefused) {
   problem.options.lift_height = 0;
   EXPECT_THROW(plan_object_pick(problem, database()), InvalidInput);
   EXPECT_THROW(plan_pick(test::small_storeroom(), database(), {0.35, -0.1, 0}, {TrayId(2), 0}, {}), InvalidInput);
+}
+
+TEST(Pick, PartsWithFewGraspsAreTriedInAsManyPostures) {
+  PartSupplyProblem room = test::small_storeroom();
+  const auto with_grasps = [&](std::size_t count) {
+    for (Tray& tray : room.trays)
+      for (Part& part : tray.parts) part.grasps.assign(40, part.grasps.front());
+    room.trays[1].parts[0].grasps.resize(count);
+    return detail::ik_seeds_of_a_grasp(room);
+  };
+  EXPECT_EQ(with_grasps(1), 128);
+  EXPECT_EQ(with_grasps(3), 43);
+  EXPECT_EQ(with_grasps(40), 8);
+  EXPECT_EQ(with_grasps(0), 8);  // nothing to try there
+  room.options.grid.ik_seeds = 50;
+  EXPECT_EQ(with_grasps(3), 50);
+  EXPECT_EQ(with_grasps(1), 128);
+  room.trays[1].parts[0].target = false;
+  EXPECT_EQ(detail::ik_seeds_of_a_grasp(room), 50);
 }
 
 /// Trays are one caller: their picks are those of the part as an object of the scene.

@@ -18,10 +18,10 @@ ReachOptions samples_drawn(std::int64_t count) {
 
 /// No false cells; of the feasible ones at most this share is missed.
 void expect_true_cells(const testing_support::MobileManipulator& robot, int samples, double missed,
-                       const ReachOptions& reach = samples_drawn(400000)) {
+                       const ReachOptions& reach = samples_drawn(400000), int grasps = 2) {
   testing_support::RowOptions row;
   row.rows = row.columns = 2;
-  row.grasps = 2;
+  row.grasps = grasps;
   row.tool_height = 0.07;
   const PartSupplyProblem problem = testing_support::tray_row(robot, row);
   const ReachDatabase database = ReachDatabase::build(robot.arm, reach);
@@ -48,6 +48,11 @@ TEST(RegionTruth, Tiago) {
 TEST(RegionTruth, Ur10eOnRidgeback) {
   MMGRASP_NEEDS_SHARED_DATA();
   expect_true_cells(testing_support::ur10e_on_ridgeback(MMGRASP_SHARED_DATA), 60, 0.05);
+}
+
+// Parts with one grasp: of seven joints eight postures at each would miss a tenth of the cells.
+TEST(RegionTruth, OneGraspOfAPart) {
+  expect_true_cells(testing_support::fetchlike(MMGRASP_ASSETS), 200, 0.02, samples_drawn(400000), 1);
 }
 
 // A database that is sparse in its cells, for few samples or for small cells, leads to the cells nonetheless.

@@ -113,9 +113,9 @@ MMGRASP_EXPORT PlanGrippersResult plan_grippers(const std::vector<AssemblyOperat
                                                 const PlanGrippersOptions& options = {}, const Monitor& monitor = {});
 
 /// The grasps that plan_grippers() tries of a segment, in the frame of the active subassembly; fingers open as
-/// far, and the palm is as wide, as the longest stroke asks. `actuators`: those with the fingers that suit the primitive
-/// count; plan_grippers() asks for the drives of each stroke by themselves. Without one, or where fingers do not suit
-/// it, there are none.
+/// far, and the palm is as wide, as the longest stroke asks. `actuators`: those with the fingers that suit the
+/// primitive count; plan_grippers() asks for the drives of each stroke by themselves. Without one, or where fingers do
+/// not suit it, there are none.
 MMGRASP_EXPORT std::vector<AssemblyGrasp> assembly_grasps(const PlacedMesh& part, const MeshSegment& segment,
                                                           const FittedPrimitive& primitive,
                                                           const std::vector<GripperActuator>& actuators,

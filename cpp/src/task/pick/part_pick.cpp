@@ -31,16 +31,16 @@ PickProblem pick_of(const PartSupplyProblem& problem, const Eigen::Vector3d& bas
   const PartSupplyOptions& options = problem.options;
   const unsigned seed =
       options.seed * 1000003u + static_cast<unsigned>(ref.tray) * 1009u + static_cast<unsigned>(ref.part);
-  return {problem.arm.at(T_world_root),
-          problem.gripper,
-          world_with_parts(problem, remaining),
-          part.name,
-          part.grasps,
-          problem.home,
-          places_over_bin(problem.place_region, T_world_root, part),
-          {options.approach_distance, options.lift_height, options.motion_time_limit, ik_seeds_of_a_grasp(problem),
-           seed},
-          part.mass};
+  return {
+      problem.arm.at(T_world_root),
+      problem.gripper,
+      world_with_parts(problem, remaining),
+      part.name,
+      part.grasps,
+      problem.home,
+      places_over_bin(problem.place_region, T_world_root, part),
+      {options.approach_distance, options.lift_height, options.motion_time_limit, ik_seeds_of_a_grasp(problem), seed},
+      part.mass};
 }
 
 }  // namespace detail

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "mmgrasp/core/export.hpp"
 #include "mmgrasp/task/ids.hpp"
 #include "mmgrasp/task/problem.hpp"
 
@@ -27,7 +28,7 @@ std::vector<PartRef> target_parts(const PartSupplyProblem& problem, TrayId tray)
 
 /// Configurations of the database refined for each grasp: `ik_seeds`, and more where a part has so few grasps that the
 /// arm would be tried in fewer than kPosturesOfPart postures at it.
-int ik_seeds_of_a_grasp(const PartSupplyProblem& problem);
+MMGRASP_EXPORT int ik_seeds_of_a_grasp(const PartSupplyProblem& problem);
 
 /// The scene with these parts in place.
 World world_with_parts(const PartSupplyProblem& problem, const std::vector<PartRef>& parts);

@@ -130,7 +130,8 @@ void bind_stops(py::module_& m) {
         return interruptible([&] { return cover_from_intersections(grid, intersections, trays); });
       },
       py::arg("grid"), py::arg("intersections"), py::arg("trays"),
-      "The least number of intersections that cover all trays (P1 equation 3.1), with proof.");
+      "The least number of intersections that cover all trays (P1 equation 3.1), with proof. Raises InvalidInput where "
+      "one\nnames a tray twice, out of order or not there, or a heading that the grid lacks.");
   m.def(
       "plan_stops_exact",
       [](const BaseGrid& grid, const OneRegionATray& given, double min_radius, double time_limit, double tie_time_limit,

@@ -162,15 +162,16 @@ void bind_grasp(py::module_& m) {
   bind_suction_grasps(m);
   m.def(
       "_sample_grasps",
-      [](const std::vector<LinkShape>& object, const Hand& gripper, const py::kwargs& options) {
+      [](const std::vector<LinkShape>& object, const Hand& gripper, const Progress& progress,
+         const py::kwargs& options) {
         const GraspSamplerOptions read = sampler_options().read(options, "sample_grasps");
-        SampledGrasps sampled;
-        {
-          sampled = interruptible([&] { return sample_grasps(object, gripper, read); });
-        }
+        SampledGrasps sampled = LongCall(progress).run([&](const Monitor& monitor) {
+          monitor.report("grasps", 0);
+          return sample_grasps(object, gripper, read);
+        });
         return py::make_tuple(std::move(sampled.grasps), sampled.too_wide);
       },
-      py::arg("object"), py::arg("gripper"),
+      py::arg("object"), py::arg("gripper"), py::kw_only(), py::arg("progress") = py::none(),
       ("(grasps, too_wide): as sample_grasps, with the number dropped as too wide." + option_help(sampler_fields()))
           .c_str());
   m.def(

@@ -354,8 +354,10 @@ void bind_verify(py::module_& top) {
         return "PlanCheckResult(" + std::to_string(r.faults.size()) + " faults, " +
                std::to_string(r.configurations_checked) + " configurations)";
       });
-  m.def("overlapping_bodies", &overlapping_bodies, py::arg("bodies"),
-        "Index pairs of the bodies that overlap by more than 1e-4 m; those that just touch do not.");
+  m.def(
+      "overlapping_bodies",
+      [](const std::vector<CheckedBody>& bodies) { return interruptible([&] { return overlapping_bodies(bodies); }); },
+      py::arg("bodies"), "Index pairs of the bodies that overlap by more than 1e-4 m; those that just touch do not.");
   m.def(
       "pads_unlike_grasp",
       [](const Hand& hand, const std::vector<LinkShape>& part, const CheckedGrasp& grasp) {

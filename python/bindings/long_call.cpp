@@ -5,6 +5,8 @@
 #include <chrono>
 #include <thread>
 
+#include "mmgrasp/core/detail/stopwatch.hpp"
+
 namespace mmgrasp::python {
 namespace {
 
@@ -23,6 +25,7 @@ struct Waiting {
 
 constexpr std::chrono::milliseconds kPoll(30);
 constexpr int kMostPolls = 100;  // The interpreter waits this often for calls that do not end.
+constexpr double kSilence = 1;   // [s]
 
 void end_calls() {
   g_closer = std::this_thread::get_id();
@@ -34,6 +37,23 @@ void end_calls() {
 bool must_sleep() {
   return g_closing && g_closer.load() != std::this_thread::get_id();
 }
+
+/// What a call said last: heard again after a second without news, so that a silent stage is seen to go on.
+class LastWord {
+ public:
+  /// `news`: what is to be handed over, if anything.
+  void say_again(std::optional<std::pair<std::string, double>>& news) {
+    if (news)
+      said_ = news;
+    else if (silence_.seconds() >= kSilence)
+      news = said_;
+    if (news) silence_ = detail::Stopwatch();
+  }
+
+ private:
+  std::optional<std::pair<std::string, double>> said_;
+  detail::Stopwatch silence_;
+};
 
 [[noreturn]] void sleep_for_ever() {
   --g_waiting;
@@ -49,6 +69,7 @@ void end_calls_at_exit() {
 
 bool LongCall::wait() {
   const Waiting waiting;
+  LastWord last;
   try {  // all that runs Python may raise KeyboardInterrupt, and nothing may leave before the thread has ended
     while (true) {
       {
@@ -56,6 +77,7 @@ bool LongCall::wait() {
         if (must_sleep()) leave();
         std::unique_lock lock(mutex_);
         if (changed_.wait_for(lock, kPoll, [this] { return done_; })) return true;
+        last.say_again(latest_);
       }
       if (PyErr_CheckSignals() != 0) break;
       hand_over_progress();

@@ -35,7 +35,7 @@ class Unlocked {
 
 /// Runs a long call on a thread of its own, without the GIL. The calling thread waits, hands progress to Python and
 /// looks for signals every 30 ms: Ctrl-C sets the cancel token, waits for the call to end, and then raises
-/// KeyboardInterrupt.
+/// KeyboardInterrupt. While the call says nothing new, Python hears what it said last once a second.
 class LongCall {
  public:
   explicit LongCall(py::object progress) : progress_(function_argument(std::move(progress), "progress")) {

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 Progress = Callable[[str, float], None] | None
-"""Called with a stage and the fraction of it that is done, in [0, 1]; None: nobody listens."""
+"""Called with a stage and the fraction of it that is done, in [0, 1]; with the same once a second while a call says nothing new. None: nobody listens."""
 
 _MARK = "_raised_by_the_caller"
 

@@ -14,6 +14,7 @@ import long_work as lw
 import mmgrasp as mg
 from argument_objects import ARM, BOX, POSE, Q
 from mmgrasp import _core
+from mmgrasp._progress import Progress
 
 CALL = Callable[[], Any]
 HUGE = 2_000_000_000  # the most that is counted
@@ -235,9 +236,9 @@ def sampled_by_cups() -> CALL:
 
 def many_bodies() -> CALL:
     bodies = [
-        _core.verify.CheckedBody(str(i), [BOX], mg.pose([0.2 * (i % 60), 0.2 * (i // 60), 0])) for i in range(3000)
+        _core.verify.CheckedBody(str(i), [BOX], mg.pose([0.2 * (i % 200), 0.2 * (i // 200), 0])) for i in range(40_000)
     ]
-    return lambda: [_core.verify.overlapping_bodies(bodies) for _ in range(50)]
+    return lambda: _core.verify.overlapping_bodies(bodies)
 
 
 def checked_path() -> CALL:
@@ -336,14 +337,19 @@ def far_route() -> CALL:
     return lambda: mg.base.plan_base_route(ARM, world, home=Q, start=[0, 0, 0], goal=[12, 0, 0], resolution=0.01)
 
 
-def blind_motion() -> CALL:
+def blind_motion(progress: Progress = None) -> CALL:
     """The square post cannot turn between the walls beside it, so no motion leads from one quarter turn to the next."""
     world = mg.World()
     for side in (-1, 1):
         world.add_box(f"wall {side}", [0.01, 0.4, 0.6], mg.pose([side * 0.062, 0, 0]))
     checker = mg.CollisionChecker(ao.ROBOT, world, ARM)
     return lambda: mg.plan_motion(
-        checker, start=[0, 0.5, 0.5], goal=[np.pi / 2, 0.5, 0.5], time_limit=1000, max_iterations=HUGE
+        checker,
+        start=[0, 0.5, 0.5],
+        goal=[np.pi / 2, 0.5, 0.5],
+        time_limit=1000,
+        max_iterations=HUGE,
+        progress=progress,
     )
 
 

@@ -268,11 +268,11 @@ def ending_fault(one: Run, code: int | None, said: str) -> str:
     return "" if code in (0, 128 + one.ending) else f"exit code {code}: {said[-300:]}"
 
 
-Names = Callable[[int, tuple[str, ...]], set[str]]
-"""The names of the files that a whole run writes."""
+Written = Callable[[int, tuple[str, ...]], Files]
+"""The files that a whole run writes."""
 
 
-def folder_fault(out: Path, before: Files, one: Run, name: str, code: int | None, names: Names) -> str:
+def folder_fault(out: Path, before: Files, one: Run, name: str, code: int | None, written: Written) -> str:
     """What is wrong with the folder after a run of a scenario of this name; nothing: ''."""
     there = state(out)
     if why := listing_fault(out, there) or mine_fault(out):
@@ -283,20 +283,28 @@ def folder_fault(out: Path, before: Files, one: Run, name: str, code: int | None
         return "exit code 0, and no plan" if code == 0 else lost_fault(out, before)
     if json.loads((out / "plan.json").read_text())["scenario"]["name"] != name:
         return "the old plan beside files of another run, or without its own"
-    return mixed_fault(out, there, before) or names_fault(one, set(there), code, names)
+    return mixed_fault(out, there, before, one, written) or names_fault(one, set(there), code, written)
 
 
-def mixed_fault(out: Path, there: Files, before: Files) -> str:
-    """Files of the run before beside the new plan: those of which the list knows another checksum, too."""
+def mixed_fault(out: Path, there: Files, before: Files, one: Run, written: Written) -> str:
+    """Files of the run before beside the new plan: those of which the list knows another checksum, too, unless the new
+    run writes the same bytes. (It does where a run of as many parts was ended before.)"""
     listed = json.loads((out / LIST).read_text())["files"]
-    old = sorted(name for name in there.keys() & before.keys() if there[name] == before[name] and len(listed[name]) > 1)
+    own = [written(one.parts, way) for way in (("--no-pictures",), one.way)]
+    old = sorted(
+        name
+        for name in there.keys() & before.keys()
+        if there[name] == before[name]
+        and len(listed[name]) > 1
+        and there[name] not in [files.get(name) for files in own]
+    )
     return f"old files beside the new plan: {old}" if old else ""
 
 
-def names_fault(one: Run, there: set[str], code: int | None, names: Names) -> str:
+def names_fault(one: Run, there: set[str], code: int | None, written: Written) -> str:
     """The new plan has all its files and no others. Pictures come after it, and what is taken in passing after
     these."""
-    least, most = names(one.parts, ("--no-pictures",)), names(one.parts, one.way)
+    least, most = set(written(one.parts, ("--no-pictures",))), set(written(one.parts, one.way))
     passing = "--drive-by" in one.way
     if passing and "drive_by.json" in there:
         least = {name for name in most if not any(fnmatchcase(name, picture) for picture in PICTURES)}
@@ -304,7 +312,7 @@ def names_fault(one: Run, there: set[str], code: int | None, names: Names) -> st
         least = most
     if missing := sorted(least - there):
         return f"the new plan without {missing[:5]}"
-    other = sorted(there - most - (names(one.parts, ()) if passing else set()))
+    other = sorted(there - most - (set(written(one.parts, ())) if passing else set()))
     return f"beside the new plan: {other[:5]}" if other else ""
 
 
@@ -313,17 +321,17 @@ def plan_into(out: Path, path: Path, way: tuple[str, ...]) -> None:
     subprocess.run(line, check=True, capture_output=True, timeout=TOO_LONG)
 
 
-def try_one(one: Run, folder: Path, out: Path, name: str, names: Names) -> str:
+def try_one(one: Run, folder: Path, out: Path, name: str, written: Written) -> str:
     before = state(out)
     code, said = end(one, command(one, scenario(folder, one.parts, name), out))
-    return ending_fault(one, code, said) or folder_fault(out, before, one, name, code, names)
+    return ending_fault(one, code, said) or folder_fault(out, before, one, name, code, written)
 
 
 class Whole(NamedTuple):
     """A run that nothing ended."""
 
-    names: set[str]
-    """Names of the files that it wrote."""
+    files: Files
+    """What it wrote."""
     seconds: float
 
 
@@ -334,7 +342,7 @@ def drawn(draw: random.Random, stepwise: bool, whole_run: Callable[[int, tuple[s
     count, way, ending = draw.choice(COUNTS), draw.choice(WAYS), draw.choice(SIGNALS)
     known = whole_run(count, way)
     if stepwise:
-        return Run(count, way, ending, -1.0, draw.randrange(STEPS_OF_A_FILE * len(known.names)))
+        return Run(count, way, ending, -1.0, draw.randrange(STEPS_OF_A_FILE * len(known.files)))
     return Run(count, way, ending, draw.uniform(0.2, 1.1 * known.seconds))
 
 
@@ -346,7 +354,7 @@ def whole_runs(folder: Path) -> Callable[[int, tuple[str, ...]], Whole]:
         place = folder / f"whole_{count}{''.join(way)}"
         begun = time.monotonic()
         plan_into(place, scenario(folder, count, "whole"), way)
-        return Whole(set(state(place)), time.monotonic() - begun)
+        return Whole(state(place), time.monotonic() - begun)
 
     return whole_run
 
@@ -375,7 +383,7 @@ def runs(folder: Path, tries: int, seed: int) -> Iterator[str]:
     out = sound_folder(folder, "out")
     for number in range(tries):
         one = drawn(draw, number % 2 == 0, whole_run)
-        why = try_one(one, folder, out, f"try {number}", lambda count, way: whole_run(count, way).names)
+        why = try_one(one, folder, out, f"try {number}", lambda count, way: whole_run(count, way).files)
         yield f"{one}: {why}" if why else ""
         if why:  # the next one begins with a sound folder
             out = sound_folder(folder, f"out_{number}")

@@ -289,6 +289,11 @@ def cells_miscounted(plan: dict[str, Any]) -> None:
     plan["intersections"][0]["cells"] += 1
 
 
+def tray_twice_in_an_intersection(plan: dict[str, Any]) -> None:
+    said = plan["intersections"][0]
+    plan["intersections"].append({**said, "trays": [said["trays"][0], *said["trays"]]})
+
+
 def tray_moved(plan: dict[str, Any]) -> None:
     plan["scenario"]["trays"][0]["pose"]["xyz"][0] += 0.05
 
@@ -341,6 +346,7 @@ BREAKS = [
     closing_along_the_approach,
     other_intersection,
     cells_miscounted,
+    tray_twice_in_an_intersection,
     tray_moved,
     tray_flattened,
     other_headings,

@@ -1,6 +1,7 @@
 """Stops, orders and policies through the Python door, on regions drawn as bitmaps."""
 
 import itertools
+from typing import Any
 
 import numpy as np
 import pytest
@@ -37,6 +38,25 @@ def test_least_stops_of_a_row() -> None:
         mg.base.plan_stops_exact(grid, masks, 0.1, start=[0, 0])
     with pytest.raises(mg.Error, match="cells"):
         mg.base.plan_stops_exact(grid, [masks[0][:, 1:]], 0.1)
+
+
+def reduced(thing: object) -> Any:
+    return thing.__reduce_ex__(4)
+
+
+def test_an_intersection_names_each_tray_once() -> None:
+    """Intersections come from the search, or from a pickle of any origin."""
+    grid, masks = squares(2)
+    pair = next(one for one in mg.base.robust_intersections(grid, masks, 0.1).robust if len(one.trays) == 2)
+    assert mg.base.cover_from_intersections(grid, [pair], 2).outcome == mg.Outcome.solved
+    restore, (kind, state) = reduced(pair)
+    for trays, rule in (
+        ([0, 1, 1], r"intersections\.trays = 1: must not be named twice in an intersection"),
+        ([1, 0], r"intersections\.trays = 0: must be ascending"),
+        ([0, 2], r"intersections\.trays = 2: must be at least 0 and below the number of trays, 2"),
+    ):
+        with pytest.raises(mg.InvalidInput, match=rule):
+            mg.base.cover_from_intersections(grid, [restore(kind, (trays, *state[1:]))], 2)
 
 
 def test_share_stops_among_robots() -> None:

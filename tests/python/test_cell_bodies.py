@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -89,6 +90,31 @@ def test_an_octree_is_its_occupied_leaves(small: dict[str, Any], write: Any, dat
         write, small, octree=str(file), within=within.tolist(), unknown="occupied", pose={"xyz": [0, 0, 20]}
     )
     assert ((covering(unknown, points) > 0) == (occupied | ~known)).all()
+
+
+def octree_text(resolution: str) -> bytes:
+    """An OctoMap file whose one leaf is an eighth of its tree."""
+    return f"# Octomap OcTree binary file\nid OcTree\nsize 2\nres {resolution}\ndata\n".encode() + b"\x02\x00"
+
+
+@pytest.mark.parametrize(("resolution", "rule"), [
+    ("1600000", r'res = "1600000\.000000": must be above 1e-9 and below 1e6 m'),
+    ("1600", r"an edge of 5\.24288e\+07 m at res = 1600 m: must be at most 1e6 m"),
+])  # fmt: skip
+def test_leaves_beyond_all_lengths_are_refused_with_their_file(
+    resolution: str, rule: str, small: dict[str, Any], write: Any
+) -> None:
+    path: Path = write({**small, "obstacles": [{"name": "seen", "octree": "huge.bt"}]})
+    file = path.parent / "huge.bt"
+    file.write_bytes(octree_text(resolution))
+    readers: list[Callable[[], Any]] = [
+        lambda: mg.World().add_octree("map", file),
+        lambda: OccupancyMap.load(file),
+        lambda: load_scenario(path),
+    ]
+    for read in readers:
+        with pytest.raises(mg.Error, match=rf"huge\.bt.*{rule}"):
+            read()
 
 
 def test_a_plan_among_cells_holds_without_the_file(small: dict[str, Any], write: Any) -> None:

@@ -11,7 +11,7 @@ GAP_CAP, REACTION_CAP = (
     1.0,
     5.0,
 )  # [s] of processor time: far above what is promised (0.2), far below what the calls take
-QUICK = ["robust_intersections", "paired_order", "optimised_order", "planar_facets", "shortest_visiting_tour", "share_stops", "random_placement"]  # fmt: skip
+QUICK = ["robust_intersections", "paired_order", "optimised_order", "planar_facets", "shortest_visiting_tour", "share_stops", "random_placement", "verify.overlapping_bodies"]  # fmt: skip
 
 CHEAP = {
     "a value or a record is made of the arguments, in proportion to their size": """
@@ -119,7 +119,7 @@ SHORT = """
     JointGroup.jacobian_batch Voxels MeshDistanceField DistanceField.distances DistanceField.distances_and_gradients
     CollisionChecker.are_free CapabilityMap.score CapabilityMap.best_base_distance DepthImage.points ProbabilisticSdf.cast_rays
     ProbabilisticSdf.distances ProbabilisticSdf.points ProbabilisticSdf.save ProbabilisticSdf.load OccupancyMap.integrate
-    OccupancyMap.query read_pcd run_policy verify.overlapping_bodies WholeBodyTrajectory.sampled
+    OccupancyMap.query read_pcd run_policy WholeBodyTrajectory.sampled
     """.split()
 """They take 0.2 to 0.8 s: on a fast machine they may return before Ctrl-C comes."""
 PARTS = 4

@@ -18,6 +18,7 @@ import pytest
 
 import mmgrasp as mg
 from argument_objects import ARM, OBJECTS, POSE, Q
+from costly_work import blind_motion
 
 
 @pytest.fixture(autouse=True)
@@ -110,6 +111,23 @@ def test_lines_and_timing_tell_their_progress() -> None:
         call(progress=lambda *now, reported=reported: reported.append(now))
         assert reported and {name for name, _ in reported} == {stage}
         assert all(0 <= fraction <= 1 for _, fraction in reported)
+
+
+def test_a_silent_stage_is_told_again_once_a_second() -> None:
+    """No motion leads to the goal, and the search has nothing to say before it has one."""
+    heard: list[tuple[str, float]] = []
+    moments: list[float] = []
+
+    def progress(stage: str, fraction: float) -> None:
+        heard.append((stage, fraction))
+        moments.append(time.monotonic())
+        if len(heard) == 4:
+            raise RuntimeError("enough")
+
+    with pytest.raises(RuntimeError, match="enough"):
+        blind_motion(progress)()
+    assert heard == [("plan motion", 0.0)] * 4
+    assert moments[-1] - moments[0] >= 2.0, "three times, a second apart, not at each look"
 
 
 def test_an_error_in_the_progress_callback_ends_the_call(small_path: Path) -> None:

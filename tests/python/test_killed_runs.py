@@ -64,8 +64,8 @@ STOPPED = Run(2, (), signal.SIGTERM, 1.0)
 PLAN_FILES = {"plan.json", "trajectories/a.csv"}
 
 
-def names(count: int, way: tuple[str, ...]) -> set[str]:
-    return PLAN_FILES if way else {*PLAN_FILES, "topview.png", "report.html"}
+def written(count: int, way: tuple[str, ...]) -> Files:
+    return killed_runs.digests({name: WHOLE[name] for name in (PLAN_FILES if way else WHOLE)})
 
 
 def folder(out: Path, files: Files, listed: dict[str, list[str]] | None = None) -> Path:
@@ -88,8 +88,8 @@ BEFORE = {"plan.json": plan("before"), "trajectories/a.csv": "old"}
 WHOLE = {"plan.json": plan("now"), "trajectories/a.csv": "new", "topview.png": "new", "report.html": "new"}
 
 
-def fault(out: Path, code: int | None) -> str:
-    return folder_fault(out, killed_runs.digests(BEFORE), KILLED, "now", code, names)
+def fault(out: Path, code: int | None, before: Files = BEFORE) -> str:
+    return folder_fault(out, killed_runs.digests(before), KILLED, "now", code, written)
 
 
 def test_the_old_plan_none_and_the_new_one_are_let_pass(tmp_path: Path) -> None:
@@ -101,6 +101,13 @@ def test_the_old_plan_none_and_the_new_one_are_let_pass(tmp_path: Path) -> None:
     (half / ".writing.x" / "old").mkdir(parents=True)
     (half / ".writing.x" / "old" / "plan.json").write_text(BEFORE["plan.json"])
     assert fault(half, 137) == ""
+
+
+def test_motions_of_an_ended_run_that_the_new_one_writes_again_are_let_pass(tmp_path: Path) -> None:
+    """A run that was ended left them without its plan; the next one was ended before the list forgot older ones."""
+    out = folder(tmp_path / "out", WHOLE, {"trajectories/a.csv": ["0"]})
+    assert fault(out, 137, {"trajectories/a.csv": WHOLE["trajectories/a.csv"]}) == ""
+    assert fault(out, 137, {**BEFORE, "trajectories/a.csv": WHOLE["trajectories/a.csv"]}) == ""
 
 
 @pytest.mark.parametrize(("files", "listed", "code", "why"), [

@@ -106,17 +106,25 @@ def test_what_is_infeasible_is_not_solved_with_another_seed(
     assert try_out({}, tmp_path) == ("infeasible", faults)
 
 
-@pytest.mark.parametrize(("moments", "is_slow"), [
-    ([0, 59], False),
-    ([0, 61], True),
-    ([*range(0, 100, 2)], False),
-    ([*range(0, 100, 2), 103], True),
+@pytest.mark.parametrize(("moments", "share", "is_slow"), [
+    ([0, 59], 1, False),
+    ([0, 61], 1, True),
+    ([*range(0, 100, 2)], 1, False),
+    ([*range(0, 100, 2), 103], 1, True),
+    ([*range(0, 100, 2), 103], 4, True),
+    ([*range(0, 100, 2)], 4, False),
+    ([*range(0, 100, 2), 103], 0.5, False),
+    ([*range(0, 200, 2), 206], 0.5, True),
+    ([*range(0, 500, 50)], 0.02, False),
+    ([0, 61], 0, True),
 ])  # fmt: skip
 def test_a_long_work_that_says_nothing_is_a_fault(
-    moments: list[int], is_slow: bool, monkeypatch: pytest.MonkeyPatch
+    moments: list[int], share: float, is_slow: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    clock = iter([*moments, moments[-1]])
-    monkeypatch.setattr(time, "monotonic", lambda: float(next(clock)))
+    """`share`: of the processor that the work has: below 1 on a busy machine, 0 where it is stuck, more with threads."""
+    for clock, rate in (("monotonic", 1.0), ("process_time", share)):
+        read = iter([*moments, moments[-1]])
+        monkeypatch.setattr(time, clock, lambda read=read, rate=rate: rate * next(read))
     watch = Watch()
     for _ in moments[1:]:
         watch("planning", 0.5)

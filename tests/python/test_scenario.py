@@ -202,6 +202,15 @@ def test_joints_that_crawl_are_refused(small: dict[str, Any], write: Callable[..
             mg.load_scenario(write(scenario))
 
 
+def test_reading_tells_of_which_part_it_seeks_grasps(small_path: Path, small: dict[str, Any]) -> None:
+    heard: list[tuple[str, float]] = []
+    mg.load_scenario(small_path, progress=lambda *now: heard.append(now))
+    types = list(small["part_types"])
+    assert len(types) > 1
+    of_parts = [now for now in heard if now[0].startswith("grasps of ")]
+    assert list(dict.fromkeys(of_parts)) == [(f"grasps of {name}", i / len(types)) for i, name in enumerate(types)]
+
+
 def test_part_larger_than_the_gripper(small: dict[str, Any], write: Callable[..., Path]) -> None:
     scenario = edited(small, "part_types.bracket.box", [0.12, 0.12, 0.12])
     scenario["trays"][0]["parts"] = [{"type": "bracket", "xyz": [0, 0]}]

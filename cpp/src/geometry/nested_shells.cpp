@@ -140,7 +140,8 @@ Nesting nesting(const std::vector<Vector3d>& v, const std::vector<Triangle>& tri
 std::vector<ShellFate> shell_fates(const std::vector<Vector3d>& vertices, const std::vector<Triangle>& triangles,
                                    const Shells& shells) {
   const std::vector<ShellExtent> all = extents(vertices, triangles, shells);
-  const auto [around, touches] = nesting(vertices, triangles, all);
+  const Nesting nested = nesting(vertices, triangles, all);
+  const std::vector<std::vector<int>>& around = nested.around;
   std::vector<int> order(all.size()), sense(all.size(), 0);
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return around[a].size() < around[b].size(); });
@@ -153,7 +154,7 @@ std::vector<ShellFate> shell_fates(const std::vector<Vector3d>& vertices, const 
       if (innermost < 0 || around[o].size() > around[innermost].size()) innermost = o;
     }
     const bool inwards = all[s].volume < 0;
-    const bool in_material = winding > 0 && !touches[s];
+    const bool in_material = winding > 0 && !nested.touches[s];
     sense[s] = in_material && (inwards || was_inside_out[innermost]) ? -1 : 1;
     was_inside_out[s] = in_material ? was_inside_out[innermost] : inwards;
     const bool bounds_solid = !in_material || winding + sense[s] == 0;

@@ -52,6 +52,7 @@ std::shared_ptr<const Stage> build_stage(const PlanToCheck& plan, std::shared_pt
 
 bool bodies_touch(const PlacedBody& a, const PlacedBody& b, const Eigen::Vector3d& shift) {
   for (std::size_t i = 0; i < a.solids.size(); ++i) {
+    mmgrasp::detail::throw_if_interrupted();
     const Pose T_a = Eigen::Translation3d(shift) * a.T_world_shape[i];
     const Bounds bounds = bounds_at(a.solids[i], T_a);
     for (std::size_t j = 0; j < b.solids.size(); ++j) {

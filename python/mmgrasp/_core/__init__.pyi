@@ -7108,7 +7108,7 @@ def _reach_option_table() -> dict[str, typing.Any]:
     ...
 def _roadmap_option_table() -> dict[str, typing.Any]:
     ...
-def _sample_grasps(object: collections.abc.Sequence[LinkShape], gripper: Hand, *, approaches: int = 8, positions: int = 3, mesh_samples: int = 400, max_grasps: int = 200, friction: float = 0.5, standoff: float = 0.0, seed: int = 1) -> tuple[list[Grasp], int]:
+def _sample_grasps(object: collections.abc.Sequence[LinkShape], gripper: Hand, *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, approaches: int = 8, positions: int = 3, mesh_samples: int = 400, max_grasps: int = 200, friction: float = 0.5, standoff: float = 0.0, seed: int = 1) -> tuple[list[Grasp], int]:
     """
     (grasps, too_wide): as sample_grasps, with the number dropped as too wide.
     
@@ -7242,7 +7242,8 @@ def copper() -> BeamMaterial:
     """
 def cover_from_intersections(grid: BaseGrid, intersections: collections.abc.Sequence[Intersection], trays: int) -> StopSet:
     """
-    The least number of intersections that cover all trays (P1 equation 3.1), with proof.
+    The least number of intersections that cover all trays (P1 equation 3.1), with proof. Raises InvalidInput where one
+    names a tray twice, out of order or not there, or a heading that the grid lacks.
     """
 def default_grasp_search(group: JointGroup) -> str:
     """

@@ -10,6 +10,8 @@ import numpy as np
 from .. import _core
 from .._core import Box, Grasp, Hand, LinkShape, Part, Tray
 from .._core import verify as checks
+from .._files import printable
+from .._progress import Progress
 from ..documents.reading import Node, near_miss
 from .cup_grasps import read_cup_grasps
 from .part_type import PartType, read_grasp_options
@@ -49,10 +51,14 @@ class TraySetup:
         return [name for name, own in self.kinds.items() if own == kind]
 
 
-def read_part_types(node: Node, gripper: Hand) -> dict[str, PartType]:
-    """The section `part_types`; raises InvalidInput for grasps that hold nothing."""
-    types = {}
-    for name, entry in node.items():
+def read_part_types(node: Node, gripper: Hand, progress: Progress = None) -> dict[str, PartType]:
+    """The section `part_types`, which takes long where parts are fine meshes; raises InvalidInput for grasps that hold nothing."""
+    types: dict[str, PartType] = {}
+    entries = list(node.items())
+    for name, entry in entries:
+        tell = _telling_of(name, len(types) / len(entries), progress)
+        if tell is not None:
+            tell("", 0.0)
         entry.mapping("", "box cylinder sphere mesh shapes scale mass grasps grasp_options")
         shapes = read_shapes(entry, find_file)
         mass = entry["mass"].number(above=0, most=1e6) if "mass" in entry else 0.0
@@ -64,9 +70,16 @@ def read_part_types(node: Node, gripper: Hand) -> dict[str, PartType]:
             _check_they_hold(entry["grasps"], name, shapes, grasps, gripper)
             _check_openings(entry["grasps"], name, shapes, gripper)
         else:
-            grasps, too_wide = _core._sample_grasps(shapes, gripper, **_grasp_options(entry))
+            grasps, too_wide = _core._sample_grasps(shapes, gripper, progress=tell, **_grasp_options(entry))
         types[name] = PartType(shapes, grasps, too_wide, entry, mass)
     return types
+
+
+def _telling_of(name: str, fraction: float, progress: Progress) -> Progress:
+    """Tells, whatever it hears, that the grasps of a part type are sought."""
+    if progress is None:
+        return None
+    return lambda *_: progress(f"grasps of {printable(name)}", fraction)
 
 
 def _grasp_options(entry: Node) -> dict[str, Any]:

@@ -130,6 +130,13 @@ TEST(Octree, RefusesNamingTheFault) {
   expect(bt("id OcTree\nsize 0\nres 0.1\n", ""), "no occupied leaf");
   expect("# Octomap OcTree file\nid OcTree\nsize 1\nres 0.1\ndata\n" + std::string("\x00\x00\xc0\x7f\x00", 5),
          "finite");
+  expect(bt("id OcTree\nsize 2\nres 1600000\n", leaf), "res = \"1600000.000000\": must be above 1e-9 and below 1e6 m");
+  expect(bt("id OcTree\nsize 2\nres 1600\n", leaf),
+         "an edge of 5.24288e+07 m at res = 1600 m: must be at most 1e6 m");  // 2^15 cells
+  std::string corner;
+  for (int level = 1; level < 16; ++level) corner += std::string("\x03\x00", 2);
+  expect(bt("id OcTree\nsize 17\nres 100\n", corner + leaf),
+         "lies off by 3.27675e+06 m at res = 100 m: must be at most 1e6 m");
   EXPECT_THROW(load_octree("/nowhere/map.bt"), IoError);
   EXPECT_THROW(load_octree("/tmp"), IoError);
 }

@@ -243,6 +243,8 @@ TEST(OccupancyMap, RefusesBadInput) {
   expect(message([&] { OccupancyMap::load(folder.file("none.bt")); }), "does not exist");
   std::ofstream(folder.file("bad.bt")) << "# Octomap OcTree binary file\nid OcTree\nsize 9\nres 0.1\ndata\na";
   expect(message([&] { OccupancyMap::load(folder.file("bad.bt")); }), "truncated");
+  std::ofstream(folder.file("coarse.bt")) << "# Octomap OcTree binary file\nid OcTree\nsize 0\nres 1500\ndata\n";
+  expect(message([&] { OccupancyMap::load(folder.file("coarse.bt")); }), "coarse.bt': res = 1500: must be in [1e-4");
   // A map without an occupied cell is one too.
   const OccupancyMap empty;
   EXPECT_TRUE(empty.obstacle_cells().empty());

@@ -236,6 +236,29 @@ TEST(MinimalStops, TraysWithoutAPlaceAreNamed) {
   EXPECT_EQ(numbers(stops.unreachable_trays), (std::vector<int>{1, 3}));
 }
 
+TEST(MinimalStops, AnIntersectionNamesEachTrayOnce) {
+  const auto refusal = [](std::vector<TrayId> trays, int heading = 0) -> std::string {
+    Intersection one;
+    one.trays = std::move(trays);
+    one.heading = heading;
+    one.radius = 1;
+    try {
+      cover_from_intersections(make_grid(4, 4), {one}, 3);
+    } catch (const InvalidInput& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refusal({TrayId(0), TrayId(1), TrayId(2)}), "");
+  EXPECT_EQ(refusal({TrayId(0), TrayId(1), TrayId(1)}),
+            "intersections.trays = 1: must not be named twice in an intersection");
+  EXPECT_EQ(refusal({TrayId(0), TrayId(1), TrayId(0)}),
+            "intersections.trays = 0: must not be named twice in an intersection");
+  EXPECT_EQ(refusal({TrayId(1), TrayId(0)}), "intersections.trays = 0: must be ascending");
+  EXPECT_EQ(refusal({TrayId(3)}), "intersections.trays = 3: must be at least 0 and below the number of trays, 3");
+  EXPECT_EQ(refusal({TrayId(0)}, 1), "intersections.heading = 1: must be one of the grid's 1");
+}
+
 /// Two trays that share all their cells, but the search ends before their pair is looked at.
 TEST(MinimalStops, AnIncompleteSearchIsNoProof) {
   const BaseGrid grid = make_grid(10, 10);

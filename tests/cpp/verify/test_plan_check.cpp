@@ -6,6 +6,7 @@
 #include <limits>
 #include <thread>
 
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/geometry/mesh.hpp"
 #include "verify/spoiled_plan.hpp"
@@ -261,6 +262,13 @@ TEST(PlanCheck, BodiesThatOverlap) {
   const std::vector<CheckedBody> bodies = {box("a", {1, 1, 1}, at(0, 0, 0)), box("b", {1, 1, 1}, at(1, 0, 0)),
                                            box("c", {1, 1, 1}, at(0.5, 0.2, 0))};
   EXPECT_EQ(overlapping_bodies(bodies), (std::vector<std::pair<std::size_t, std::size_t>>{{0, 2}, {1, 2}}));
+}
+
+TEST(PlanCheck, OverlapsAreNotSoughtAnyMoreOnceStopped) {
+  mmgrasp::CancelToken stop;
+  stop.stop();
+  const mmgrasp::detail::InterruptionScope scope(stop);
+  EXPECT_THROW(overlapping_bodies({box("a", {1, 1, 1}, at(0, 0, 0))}), mmgrasp::detail::Interrupted);
 }
 
 TEST(PlanCheck, ReleaseOutsideBin) {

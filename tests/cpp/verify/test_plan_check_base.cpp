@@ -284,8 +284,9 @@ TEST(PlanCheckFigures, WhatDescribesMustNotLie) {
   lies[5].leg_values[2].length = std::nan("");
   lies[6].leg_values[0].duration *= 1.1;
   for (const PlanToCheck& lie : lies) EXPECT_EQ(codes_of(lie), Codes{"route-values"}) << &lie - lies.data();
-  lies.assign(7, good);
-  lies[6].intersections[0].radius = 0.19;  // not the largest
+  lies.assign(8, good);
+  lies[7].intersections[0].trays.push_back("A");  // twice
+  lies[6].intersections[0].radius = 0.19;         // not the largest
   lies[0].intersections[0].radius = 0.21;
   lies[1].intersections[1].trays.push_back("A");
   lies[2].intersections[1].centre.x() = 0.55;

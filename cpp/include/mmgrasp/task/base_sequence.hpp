@@ -23,7 +23,7 @@ MMGRASP_EXPORT InscribedCircle inscribed_circle(const BaseGrid& grid, const Cell
 
 /// Cells that several regions share, with their largest disc (P1 3.4.2).
 struct MMGRASP_EXPORT Intersection {
-  std::vector<TrayId> trays;                         ///< Trays whose regions share the cells, ascending.
+  std::vector<TrayId> trays;                         ///< Trays whose regions share the cells, ascending, each once.
   int heading = 0;                                   ///< Layer of the grid.
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();  ///< Centre of the disc [m].
   double radius = 0;                                 ///< Radius of the disc [m].
@@ -113,8 +113,8 @@ MMGRASP_EXPORT StopSet plan_stops_exact(const BaseGrid& grid, const std::vector<
 MMGRASP_EXPORT double straight_route_length(const std::vector<Stop>& stops, const Eigen::Vector2d& start,
                                             const Eigen::Vector2d& goal);
 
-/// The least number of robust intersections that cover all trays (P1 equation 3.1), by 0-1 programming with proof;
-/// among equally few, larger discs are preferred. Each tray goes to the chosen stop with the largest disc.
+/// The least number of intersections that cover all trays (P1 equation 3.1), by 0-1 programming with proof; among
+/// equally few, larger discs are preferred. A tray goes to the stop with the largest disc; one named twice is refused.
 MMGRASP_EXPORT StopSet cover_from_intersections(const BaseGrid& grid, const std::vector<Intersection>& intersections,
                                                 int trays);
 

@@ -59,7 +59,7 @@ struct MMGRASP_EXPORT PlanCheckOptions {
 ///   `region-incomplete` (cells left out that serve everything: the least number of stops is then not proven);
 /// - what only describes: `route-values` (length, turning, duration), `acceleration` (stored ones above the limits or
 ///   not those of the velocities), `wrong-values` (robustness rate below what is required or above 1, intersections
-///   that lie elsewhere).
+///   that lie elsewhere or name a tray twice).
 struct MMGRASP_EXPORT Fault {
   std::string code;
   std::string where;    ///< E.g. "pick 3 (A/bracket_02), lift, t = 1.24 s".

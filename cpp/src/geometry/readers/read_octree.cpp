@@ -5,12 +5,14 @@
 #include <cstdint>
 #include <cstring>
 #include <map>
+#include <sstream>
 
 #include "geometry/readers/mesh_readers.hpp"
 #include "geometry/readers/octree_reader.hpp"
 #include "mmgrasp/core/detail/file_content.hpp"
 #include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -117,7 +119,17 @@ class OctreeReader {
     const int half = cell.depth > 0 ? 1 << (cell.depth - 1) : 0;
     const double offset = cell.depth > 0 ? 0.5 : 0.0;
     const Eigen::Vector3d index(cell.x - half + offset, cell.y - half + offset, cell.z - half + offset);
-    leaves_[cell.depth].push_back(index * edge(cell.depth));
+    const Eigen::Vector3d centre = index * edge(cell.depth);
+    check_leaf("has an edge of ", edge(cell.depth));
+    check_leaf("lies off by ", centre.cwiseAbs().maxCoeff());
+    leaves_[cell.depth].push_back(centre);
+  }
+
+  void check_leaf(const char* what, double length) const {
+    if (length <= kLargestLength) return;
+    std::ostringstream text;
+    text << "an occupied leaf " << what << length << " m at res = " << resolution_ << " m: must be at most 1e6 m";
+    fail(text.str());
   }
 
   /// Two bits a child: 0 unknown, 1 free, 2 occupied, 3 an inner node that follows.

@@ -21,6 +21,8 @@ namespace {
 
 constexpr int kDepth = 16, kHalf = 1 << (kDepth - 1);  // OctoMap's trees: levels, cells on either side of the origin
 
+constexpr double kFinest = 1e-4, kCoarsest = 1e3;  // edge of a cell [m]
+
 using Leaves = std::map<double, std::vector<Eigen::Vector3d>>;  // by edge length
 
 std::vector<Voxels> voxels_of(Leaves leaves) {
@@ -143,7 +145,7 @@ struct OccupancyMap::Impl {
 };
 
 void OccupancyOptions::check() const {
-  require(resolution >= 1e-4 && resolution <= 1e3, "resolution", resolution, "must be in [1e-4, 1e3] m");
+  require(resolution >= kFinest && resolution <= kCoarsest, "resolution", resolution, "must be in [1e-4, 1e3] m");
   require(hit > 0.5 && hit < 1, "hit", hit, "must be above 0.5 and below 1");
   require(miss > 0 && miss < 0.5, "miss", miss, "must be above 0 and below 0.5");
   require(max_range > 0, "max_range", max_range, "must be positive [m]");
@@ -283,6 +285,11 @@ void OccupancyMap::save(const std::string& path) const {
 
 OccupancyMap OccupancyMap::load(const std::string& path, OccupancyOptions options) {
   const OctreeFile file = read_octree_file(path);
+  if (!(file.resolution >= kFinest && file.resolution <= kCoarsest)) {
+    std::ostringstream text;
+    text << "octree file '" << path << "': res = " << file.resolution << ": must be in [1e-4, 1e3] m";
+    throw IoError(text.str());
+  }
   options.resolution = file.resolution;
   OccupancyMap out(options);
   if (file.nodes == 0) return out;

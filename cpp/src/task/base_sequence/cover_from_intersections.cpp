@@ -1,6 +1,7 @@
 // cover_from_intersections(): the least number of robust intersections that cover all trays.
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/error.hpp"
@@ -25,6 +26,18 @@ std::vector<double> stop_costs(const std::vector<Intersection>& intersections) {
   return costs;
 }
 
+/// Throws InvalidInput unless the trays are ascending, each named once, and there are so many.
+void check_trays(const std::vector<TrayId>& named, int trays) {
+  for (auto tray = named.begin(); tray != named.end(); ++tray) {
+    require(*tray >= 0 && *tray < trays, "intersections.trays", *tray,
+            "must be at least 0 and below the number of trays, " + std::to_string(trays));
+    if (tray == named.begin() || *(tray - 1) < *tray) continue;
+    const bool is_new = std::find(named.begin(), tray, *tray) == tray;
+    require(false, "intersections.trays", *tray,
+            is_new ? "must be ascending" : "must not be named twice in an intersection");
+  }
+}
+
 /// Serving fewer trays than the intersection allows, a stop may find a larger disc.
 int widest_for(const std::vector<Intersection>& intersections, const std::vector<TrayId>& trays, int chosen) {
   int best = chosen;
@@ -40,6 +53,11 @@ int widest_for(const std::vector<Intersection>& intersections, const std::vector
 
 StopSet cover_from_intersections(const BaseGrid& grid, const std::vector<Intersection>& intersections, int trays) {
   require_within(trays, 0, 10000, "trays", "");
+  for (const Intersection& some : intersections) {
+    check_trays(some.trays, trays);
+    require(some.heading >= 0 && some.heading < static_cast<int>(grid.headings.size()), "intersections.heading",
+            some.heading, "must be one of the grid's " + std::to_string(grid.headings.size()));
+  }
   StopSet result;
   SetCoverProblem problem;
   problem.elements = trays;

@@ -126,11 +126,12 @@ GoalConfigurations find_goal_configurations(const JointGroup& group, CollisionCh
   }
   std::sort(order.begin(), order.end());
   GoalConfigurations result;
-  for (const auto& [time, i] : order) {
+  for (const auto& time_and_index : order) {
+    const StepConfiguration& one = found[time_and_index.second];
     const bool twin = std::any_of(result.begin(), result.end(), [&](const StepConfiguration& s) {
-      return s.candidate == found[i].candidate && (s.q - found[i].q).cwiseAbs().maxCoeff() < kSameConfiguration;
+      return s.candidate == one.candidate && (s.q - one.q).cwiseAbs().maxCoeff() < kSameConfiguration;
     });
-    if (!twin) result.push_back(found[i]);
+    if (!twin) result.push_back(one);
   }
   return result;
 }

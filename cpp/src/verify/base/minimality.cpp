@@ -153,6 +153,11 @@ class StopsCheck {
   /// The largest disc around its centre that lies in the regions of its trays.
   void check_intersection(std::size_t index) {
     const CheckedIntersection& said = plan_.intersections[index];
+    const std::string where = "intersection " + std::to_string(index);
+    std::set<std::string> named;
+    for (const std::string& tray : said.trays) {
+      if (!named.insert(tray).second) faults_.push_back({"wrong-values", where, "names tray '" + tray + "' twice"});
+    }
     const int layer = std::isfinite(said.heading) ? floor_.layer(said.heading) : -1;
     bool good = layer >= 0 && said.centre.allFinite() && said.radius >= 0 && std::isfinite(said.radius);
     double room = mmgrasp::detail::kInfinity;
@@ -163,7 +168,7 @@ class StopsCheck {
     }
     good = good && std::abs(room - said.radius) <= kFigureBand;
     if (good) return;
-    faults_.push_back({"wrong-values", "intersection " + std::to_string(index),
+    faults_.push_back({"wrong-values", where,
                        "its disc of " + text(said.radius) +
                            " m does not lie in the regions of all its trays, or is not the largest around its centre"});
   }

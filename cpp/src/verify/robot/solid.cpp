@@ -15,6 +15,7 @@
 #include <numeric>
 #include <variant>
 
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/geometry/shape.hpp"
@@ -151,7 +152,9 @@ bool swallows(const Solid& outer, const Pose& T_world_outer, const Solid& inner,
   const Pose T_outer_inner = T_world_outer.inverse() * T_world_inner;
   return std::any_of(inner.probes.begin(), inner.probes.end(), [&](const Eigen::Vector3d& probe) {
     const Eigen::Vector3d point = T_outer_inner * probe;
-    return outer.local.contains(point) && mesh_contains(*outer.mesh, point);
+    if (!outer.local.contains(point)) return false;
+    mmgrasp::detail::throw_if_interrupted();  // the question goes to every triangle
+    return mesh_contains(*outer.mesh, point);
   });
 }
 
@@ -183,6 +186,7 @@ Solid grown_plane(const Solid& solid, double by) {
 std::vector<Solid> make_solids(const std::vector<LinkShape>& shapes) {
   std::vector<Solid> solids;
   for (const LinkShape& item : shapes) {
+    mmgrasp::detail::throw_if_interrupted();
     check_item(item);
     add_solids(item, solids);
   }

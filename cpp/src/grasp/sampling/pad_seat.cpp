@@ -189,6 +189,11 @@ double apart(const Touch& a, const Touch& b) {
   return (one.min() - other.max()).cwiseMax(other.min() - one.max()).cwiseMax(0).norm();
 }
 
+/// Angle between the closing axis and the line between the middles of what two pads touch, `width` apart [rad].
+double angle_of_middles(const Touch& a, const Touch& b, double width) {
+  return std::atan2((bounds_of(a.where).center() - bounds_of(b.where).center()).norm(), width);
+}
+
 }  // namespace
 
 TriangleBalls::TriangleBalls(const TriangleMesh& mesh) : mesh_(mesh) {
@@ -252,7 +257,9 @@ std::optional<PadSeat> PadSeats::seat(const ContactPair& pair, const Vector3d& a
   const Touch touched[] = {on_side(0), on_side(1)};
   const double angle = std::max(touched[0].angle, touched[1].angle), width = touched[0].reach + touched[1].reach;
   if (angle > cone_ || apart(touched[0], touched[1]) > options_.friction * width) return {};
-  return PadSeat{pair.middle + (touched[0].reach - touched[1].reach) / 2 * pair.axis, width, 1 - angle / cone_};
+  const double worst = std::max(angle, angle_of_middles(touched[0], touched[1], width));
+  return PadSeat{pair.middle + (touched[0].reach - touched[1].reach) / 2 * pair.axis, width,
+                 std::max(0.0, 1 - worst / cone_)};
 }
 
 }  // namespace mmgrasp::detail

@@ -49,7 +49,7 @@ def _far_face(shapes: list[LinkShape], down: np.ndarray) -> float:
     """The largest down . x over the shapes [m]."""
     T = np.eye(4)
     T[:3, :3] = np.vstack((down, _axes_across(down)))  # turns `down` into x
-    return max(LinkShape(shape.shape, T @ shape.pose).bounds[1][0] for shape in shapes)
+    return float(max(LinkShape(shape.shape, T @ shape.pose).bounds[1][0] for shape in shapes))
 
 
 def _axes_across(direction: np.ndarray) -> np.ndarray:

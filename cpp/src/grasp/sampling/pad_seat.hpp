@@ -13,7 +13,7 @@ namespace mmgrasp::detail {
 struct PadSeat {
   Eigen::Vector3d middle;  ///< Midway between the pads, object frame [m].
   double width;            ///< Distance between the pads [m].
-  /// As ContactPair's, of what the pads touch, and of the line between the middles of that on either side.
+  /// As ContactPair's, of what the pads touch and, on crests, of the line between the middles of that on either side.
   double alignment;
 };
 

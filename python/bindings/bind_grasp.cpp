@@ -1,3 +1,4 @@
+#include "arrays.hpp"
 #include "bindings.hpp"
 #include "given.hpp"
 #include "mmgrasp/grasp/grasp.hpp"
@@ -13,6 +14,21 @@ namespace {
 
 using namespace py::literals;
 
+OptionField<GraspSamplerOptions> approach_direction_option() {
+  using O = GraspSamplerOptions;
+  const auto set = [](O& options, const py::handle& value) {
+    options.approach_direction.reset();
+    if (!value.is_none()) options.approach_direction = vector3_argument(value, "approach_direction");
+  };
+  const auto get = [](const O& options) -> py::object {
+    if (!options.approach_direction) return py::none();
+    const Eigen::Vector3d& v = *options.approach_direction;
+    return py::make_tuple(v[0], v[1], v[2]);
+  };
+  return {"approach_direction", "numpy.typing.ArrayLike | None", set, get,
+          "of every grasp: a unit vector in the object's frame; None: from all around"};
+}
+
 const std::vector<OptionField<GraspSamplerOptions>>& sampler_fields() {
   using O = GraspSamplerOptions;
   static const std::vector<OptionField<O>> fields{
@@ -23,6 +39,7 @@ const std::vector<OptionField<GraspSamplerOptions>>& sampler_fields() {
       option<O>("max_grasps", &O::max_grasps, "best kept, spread over approach directions"),
       option<O>("friction", &O::friction, "Coulomb coefficient"),
       option<O>("standoff", &O::standoff, "how far the tool frame stays outside the object's middle [m]"),
+      approach_direction_option(),
       option<O>("seed", &O::seed, "same seed, same grasps")};
   return fields;
 }
@@ -154,6 +171,7 @@ void bind_record(py::module_& m) {
 
 void bind_grasp(py::module_& m) {
   m.def("_grasp_option_table", [] { return option_table(sampler_fields()); });
+  m.def("_straight_approach", [] { return kStraightApproach; });
   m.def("_grasp_option_bounds", [] { return sampler_options().bounds(); });
   bind_provenance(m);
   bind_record(m);

@@ -114,6 +114,7 @@ VALUES: dict[str, Any] = {
     "drift": np.array([0.01, 0.01, 0.01]),
     "start_error": np.array([0.01, 0.01, 0.01]),
     "approach": np.array([1.0, 0, 0]),
+    "approach_direction": np.array([0.0, 0, -1]),
     "closing": np.array([0.0, 1, 0]),
     "xyz": np.array([1.0, 2, 3]),
     "rpy": np.array([0.1, 0.2, 0.3]),

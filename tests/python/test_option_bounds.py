@@ -58,7 +58,11 @@ MOST = {"seed": 2**31 - 1}
 def numbers(section: str) -> dict[str, bool]:
     """Name of each number, and whether it is a whole one."""
     table = TABLES[section][0]
-    return {name: isinstance(value, int) for name, (value, _) in table.items() if not isinstance(value, bool | str)}
+    return {
+        name: isinstance(value, int)
+        for name, (value, _) in table.items()
+        if isinstance(value, int | float) and not isinstance(value, bool)
+    }
 
 
 def next_to(bound: float, way: int, is_whole: bool) -> float:

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "geometry/faces_inwards.hpp"
+#include "geometry/open_seams.hpp"
 #include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/geometry/detail/mesh_topology.hpp"
 
@@ -180,6 +181,28 @@ bool mend_open(const std::vector<Eigen::Vector3d>& vertices, Triangles& triangle
   return orient_open(vertices, triangles) && close(vertices, triangles, enclosed);
 }
 
+/// The triangles with each corner's vertex replaced, without those that fall together.
+Triangles with_vertices(Triangles triangles, const std::vector<int>& same) {
+  for (auto& triangle : triangles)
+    for (int& corner : triangle) corner = same[corner];
+  triangles.erase(std::remove_if(triangles.begin(), triangles.end(), has_equal_corners), triangles.end());
+  return triangles;
+}
+
+/// Whether the triangles bound a solid once vertices on either side of their seams are the same; then they are joined
+/// there, and `joined` says for each vertex which one stands for it. Sheets stored from both sides bound none.
+bool close_seams(const std::vector<Eigen::Vector3d>& vertices, Triangles& triangles, EnclosedBodies& enclosed,
+                 std::vector<int>& joined) {
+  const std::vector<int> same = joined_at_seams(vertices, triangles);
+  if (same.empty()) return false;
+  Triangles closed = with_vertices(triangles, same);
+  if (!close_without_repeats(vertices, closed, enclosed) && !close(vertices, closed, enclosed)) return false;
+  if (is_thin(vertices, closed)) return false;
+  triangles = std::move(closed);
+  joined = same;
+  return true;
+}
+
 }  // namespace
 
 std::shared_ptr<const TriangleMesh> clean_mesh(RawMesh raw, const std::string& source, MeshReport* report,
@@ -200,10 +223,14 @@ std::shared_ptr<const TriangleMesh> clean_mesh(RawMesh raw, const std::string& s
   // answered.
   // A file may hold each face twice, from either side. Faces that two solids share are no repeats: both stay where one
   // of them would leave the solids open.
-  const Triangles file = faults == nullptr ? Triangles{} : triangles;
+  Triangles file = faults == nullptr ? Triangles{} : triangles;
   EnclosedBodies enclosed;
+  std::vector<int> joined;
   mesh->closed = close_without_repeats(mesh->vertices, triangles, enclosed) ||
-                 close(mesh->vertices, triangles, enclosed) || mend_open(mesh->vertices, triangles, enclosed);
+                 close(mesh->vertices, triangles, enclosed) || mend_open(mesh->vertices, triangles, enclosed) ||
+                 close_seams(mesh->vertices, triangles, enclosed, joined);
+  for (std::size_t i = 0; i < joined.size(); ++i) found.vertices_merged += joined[i] != static_cast<int>(i);
+  if (!joined.empty()) file = with_vertices(std::move(file), joined);
   if (faults != nullptr)
     faults->repeated_triangles = static_cast<int>(file.size() - triangles.size()) - enclosed.triangles;
   triangles.erase(

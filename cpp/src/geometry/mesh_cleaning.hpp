@@ -17,7 +17,8 @@ struct RawMesh {
   std::vector<std::array<int, 3>> triangles;
 };
 
-/// Merges equal vertices, drops triangles without an area and unused vertices, and finds out whether the mesh is closed
+/// Merges equal vertices (where that leaves a solid open, those at its seams that are equal to single precision, too),
+/// drops triangles without an area and unused vertices, and finds out whether the mesh is closed
 /// and convex. Faces of an open one that look another way than their neighbours are turned, copies dropped. Input is
 /// finite and its indices are in range.
 std::shared_ptr<const TriangleMesh> clean_mesh(RawMesh raw, const std::string& source, MeshReport* report,

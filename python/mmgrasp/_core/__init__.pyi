@@ -7108,7 +7108,7 @@ def _reach_option_table() -> dict[str, typing.Any]:
     ...
 def _roadmap_option_table() -> dict[str, typing.Any]:
     ...
-def _sample_grasps(object: collections.abc.Sequence[LinkShape], gripper: Hand, *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, approaches: int = 8, positions: int = 3, mesh_samples: int = 400, max_grasps: int = 200, friction: float = 0.5, standoff: float = 0.0, seed: int = 1) -> tuple[list[Grasp], int]:
+def _sample_grasps(object: collections.abc.Sequence[LinkShape], gripper: Hand, *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, approaches: int = 8, positions: int = 3, mesh_samples: int = 400, max_grasps: int = 200, friction: float = 0.5, standoff: float = 0.0, approach_direction: numpy.typing.ArrayLike | None = None, seed: int = 1) -> tuple[list[Grasp], int]:
     """
     (grasps, too_wide): as sample_grasps, with the number dropped as too wide.
     
@@ -7119,6 +7119,7 @@ def _sample_grasps(object: collections.abc.Sequence[LinkShape], gripper: Hand, *
         max_grasps: int = 200  # best kept, spread over approach directions
         friction: float = 0.5  # Coulomb coefficient
         standoff: float = 0.0  # how far the tool frame stays outside the object's middle [m]
+        approach_direction: numpy.typing.ArrayLike | None = None  # of every grasp: a unit vector in the object's frame; None: from all around
         seed: int = 1  # same seed, same grasps
     """
 def _sdf_option_table() -> dict[str, typing.Any]:
@@ -7126,6 +7127,8 @@ def _sdf_option_table() -> dict[str, typing.Any]:
 def _segmentation_option_table() -> dict[str, typing.Any]:
     ...
 def _shape_diameter_option_table() -> dict[str, typing.Any]:
+    ...
+def _straight_approach() -> float:
     ...
 def _suction_option_bounds() -> dict[str, typing.Any]:
     ...
@@ -7916,7 +7919,7 @@ def run_policy(grid: BaseGrid, cells: collections.abc.Sequence[collections.abc.S
     """
     Plans the stops of every round for all parts, the `remaining` or the `targets` and holds them against the parts' bitmaps `cells` [tray][part]. `planned(round)` gives other regions to plan with, one a tray: what they cost counts as time between the rounds.
     """
-def sample_grasps(object: collections.abc.Sequence[LinkShape], gripper: Hand, *, approaches: int = 8, positions: int = 3, mesh_samples: int = 400, max_grasps: int = 200, friction: float = 0.5, standoff: float = 0.0, seed: int = 1) -> list[Grasp]:
+def sample_grasps(object: collections.abc.Sequence[LinkShape], gripper: Hand, *, approaches: int = 8, positions: int = 3, mesh_samples: int = 400, max_grasps: int = 200, friction: float = 0.5, standoff: float = 0.0, approach_direction: numpy.typing.ArrayLike | None = None, seed: int = 1) -> list[Grasp]:
     """
     Antipodal grasps of a body given as a list of LinkShape (P1 3.4.1), best first.
     
@@ -7927,6 +7930,7 @@ def sample_grasps(object: collections.abc.Sequence[LinkShape], gripper: Hand, *,
         max_grasps: int = 200  # best kept, spread over approach directions
         friction: float = 0.5  # Coulomb coefficient
         standoff: float = 0.0  # how far the tool frame stays outside the object's middle [m]
+        approach_direction: numpy.typing.ArrayLike | None = None  # of every grasp: a unit vector in the object's frame; None: from all around
         seed: int = 1  # same seed, same grasps
     """
 def sample_suction_grasps(object: collections.abc.Sequence[LinkShape], hand: Hand, mass: float = 0.0, *, turns: int = 8, surface_samples: int = 300, max_grasps: int = 96, seed: int = 1) -> SampledSuctionGrasps:

@@ -13,9 +13,9 @@ from .part_type import PartType, read_grasp_options
 
 def read_cup_grasps(entry: Node, name: str, shapes: list[LinkShape], hand: Hand, mass: float) -> PartType:
     """One of `part_types`; a part that no cups hold is refused where it is a target."""
+    options = read_grasp_options(entry, _core._suction_option_table())
     if "grasps" in entry:
         return PartType(shapes, _listed(entry["grasps"], name, shapes, hand, mass), 0, entry, mass)
-    options = read_grasp_options(entry, _core._suction_option_table())
     where = entry["grasp_options"] if options else entry
     try:
         found = _core.sample_suction_grasps(shapes, hand, mass, **options)

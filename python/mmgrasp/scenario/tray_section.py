@@ -65,13 +65,15 @@ def read_part_types(node: Node, gripper: Hand, progress: Progress = None) -> dic
         if gripper.suction is not None:
             types[name] = read_cup_grasps(entry, name, shapes, gripper, mass)
             continue
+        options = _grasp_options(entry)
         if "grasps" in entry:
             grasps, too_wide = _listed_grasps(entry["grasps"], gripper)
             _check_they_hold(entry["grasps"], name, shapes, grasps, gripper)
             _check_openings(entry["grasps"], name, shapes, gripper)
+            types[name] = PartType(shapes, grasps, too_wide, entry, mass)
         else:
-            grasps, too_wide = _core._sample_grasps(shapes, gripper, progress=tell, **_grasp_options(entry))
-        types[name] = PartType(shapes, grasps, too_wide, entry, mass)
+            grasps, too_wide = _core._sample_grasps(shapes, gripper, progress=tell, **options)
+            types[name] = PartType(shapes, grasps, too_wide, entry, mass, gripper=gripper, grasp_options=options)
     return types
 
 
@@ -253,14 +255,16 @@ def _typed(
     for full, (_, kind, T_tray_part) in zip(names, placed, strict=True):
         if body is not None:
             _check_inside(node, full, types[kind], T_tray_part, body)
+        grasps = types[kind].grasps
         if full in targets:
-            _check_graspable(full, types[kind], gripper)
+            grasps = types[kind].grasps_on(T_tray_part)
+            _check_graspable(full, types[kind], grasps, gripper)
         parts.append(
             Part(
                 full,
                 types[kind].shapes,
                 T_world_tray @ T_tray_part,
-                types[kind].grasps,
+                grasps,
                 target=full in targets,
                 grasps_too_wide=types[kind].too_wide,
                 mass=types[kind].mass,
@@ -369,15 +373,20 @@ def _check_inside(node: Node, name: str, kind: PartType, T: np.ndarray, body: Tr
         node["parts"].fail(f"part {name} reaches {high[2] - body.roof:.4g} m through the tray's roof")
 
 
-def _check_graspable(name: str, kind: PartType, gripper: Hand) -> None:
+def _check_graspable(name: str, kind: PartType, grasps: list[Grasp], gripper: Hand) -> None:
     if gripper.suction is not None and kind.mass == 0:
         kind.node.fail(f"part {name} has no mass [kg], which a hand of suction cups must know: cups hold by force")
     if kind.mass > gripper.payload:
         kind.node["mass"].fail(f"part {name} weighs more than the gripper's payload, {gripper.payload:g} kg")
-    if kind.grasps:
+    if grasps:
         return
     if kind.why_none:
         kind.node.fail(f"part {name} has no grasp: {kind.why_none}")
+    if "approach_direction" in kind.grasp_options:
+        wider = f" ({kind.too_wide} are wider than its opening of {gripper.max_opening:g} m)" if kind.too_wide else ""
+        kind.node["grasp_options"]["approach_direction"].fail(
+            f"part {name} has no grasp along it: no two opposite surfaces across it fit the gripper{wider}"
+        )
     if kind.too_wide:
         kind.node.fail(
             f"part {name} is larger than the gripper: none of {kind.too_wide} grasps fits its opening of "

@@ -45,6 +45,35 @@ std::shared_ptr<const TriangleMesh> turned(const std::vector<Ring>& outline) {
   return make_mesh(vertices, triangles);
 }
 
+/// A rod about z with a screw thread of triangular crests, meshed in rings around its axis.
+std::shared_ptr<const TriangleMesh> threaded(double radius, double depth, double length, double pitch) {
+  constexpr int kPerTurn = 8;
+  const int rings = static_cast<int>(std::lround(length / pitch * kPerTurn)) + 1;
+  std::vector<Eigen::Vector3d> vertices;
+  std::vector<std::array<int, 3>> triangles;
+  for (int k = 0; k < rings; ++k)
+    for (int i = 0; i < kSides; ++i) {
+      const double z = length * k / (rings - 1) - length / 2, turns = static_cast<double>(i) / kSides;
+      const double phase = z / pitch - turns, below = 2 * std::abs(phase - std::round(phase));  // 0 at a crest
+      const double r = radius - depth * below;
+      vertices.emplace_back(r * std::cos(2 * kPi * turns), r * std::sin(2 * kPi * turns), z);
+    }
+  const int bottom = rings * kSides, top = bottom + 1;
+  vertices.emplace_back(0, 0, -length / 2);
+  vertices.emplace_back(0, 0, length / 2);
+  for (int i = 0; i < kSides; ++i) {
+    const int next = (i + 1) % kSides;
+    for (int k = 0; k + 1 < rings; ++k) {
+      const int a = k * kSides + i, b = k * kSides + next;
+      triangles.push_back({a, b, b + kSides});
+      triangles.push_back({a, b + kSides, a + kSides});
+    }
+    triangles.push_back({bottom, next, i});
+    triangles.push_back({top, (rings - 1) * kSides + i, (rings - 1) * kSides + next});
+  }
+  return make_mesh(vertices, triangles);
+}
+
 /// V-shaped grooves of 60 degrees from end to end, crests at the radius.
 std::vector<Ring> grooved(double radius, double length, double pitch) {
   const double depth = pitch / 2 / std::tan(30 * kDegree);
@@ -133,6 +162,22 @@ TEST(CrestGrasps, AGroovedRodIsHeldAsTheSmoothOneOfItsOutline) {
       EXPECT_NE(verify::pads_unlike_grasp(checked_pads(), {part}, grasp), "");
     }
   }
+}
+
+TEST(CrestGrasps, ACoarseThreadHeldAskewIsLessAlignedThanStraightAcross) {
+  LinkShape part;
+  part.shape = MeshShape{threaded(0.012, 0.0025, 0.08, 0.004)};
+  GraspSamplerOptions options;
+  options.max_grasps = 1000000;
+  options.approaches = 4;
+  double straight = 0, askew = 0;
+  for (const Grasp& grasp : sample_grasps({part}, gripper(), options).grasps) {
+    const double alignment = grasp.quality_factors.front().value;
+    if (tilt(grasp) < 3 * kDegree) straight = std::max(straight, alignment);
+    if (tilt(grasp) > 8 * kDegree && tilt(grasp) < 45 * kDegree) askew = std::max(askew, alignment);
+  }
+  EXPECT_GT(straight, 0.75);
+  EXPECT_LT(askew, straight - 0.2);
 }
 
 TEST(CrestGrasps, ASharpRingIsNoFlatContact) {

@@ -39,11 +39,11 @@ struct MMGRASP_EXPORT MeshReport {
   double deviation = 0;         ///< No point of what was chosen lies farther than this from the mesh [m].
 };
 
-/// Reads STL, OBJ, PLY or DAE; merges equal vertices, drops degenerate triangles, orients a closed mesh outwards
-/// (cavities inwards), faces of an open one as their neighbours. `scale` multiplies per axis. Files without a unit
-/// count as metres; a DAE's unit and node transforms count, its up axis does not: URDF tools show DAE coordinates as
-/// they stand. Throws IoError naming the file (and line where there are lines) when it is missing, truncated, empty, no
-/// mesh or holds a non-finite number; InvalidInput for a bad scale.
+/// Reads STL, OBJ, PLY or DAE; merges equal vertices (and those of seams that are equal to single precision, where that
+/// makes a solid), drops degenerate triangles, orients a closed mesh outwards (cavities inwards), faces of an open one
+/// as neighbours. `scale` multiplies per axis. Files without a unit count as metres; a DAE's unit and node transforms
+/// count, its up axis does not: URDF tools show it as it stands. Throws IoError naming the file (and line, if any) when
+/// it is missing, truncated, empty, no mesh or holds a non-finite number; InvalidInput for a bad scale.
 MMGRASP_EXPORT std::shared_ptr<const TriangleMesh> load_mesh(const std::string& path,
                                                              const Eigen::Vector3d& scale = Eigen::Vector3d::Ones(),
                                                              MeshReport* report = nullptr);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "mmgrasp/core/export.hpp"
@@ -8,6 +10,9 @@
 #include "mmgrasp/robot/joint.hpp"
 
 namespace mmgrasp {
+
+/// Approaches within this angle of a direction are straight along it [rad]: poses with angles of four decimals are.
+inline constexpr double kStraightApproach = 1e-3;
 
 /// How densely sample_grasps() covers a body with grasps, and which pairs of contacts it takes for antipodal.
 struct MMGRASP_EXPORT GraspSamplerOptions {
@@ -20,6 +25,8 @@ struct MMGRASP_EXPORT GraspSamplerOptions {
   /// Coulomb coefficient; an antipodal pair's normals lie within atan(friction) of its axis; > 0.
   double friction = 0.5;
   double standoff = 0.0;  ///< How far the tool frame stays outside the object's middle along the approach [m].
+  /// Of every grasp, to within kStraightApproach: a unit vector in the object's frame. None: from all around.
+  std::optional<Eigen::Vector3d> approach_direction{};
   unsigned seed = 1;
   void check() const;
 };
@@ -41,6 +48,8 @@ struct MMGRASP_EXPORT GraspSamplerOptions {
 /// - Where the tips of the pads would reach beyond the object's far face along the approach, since it is thinner than
 ///   they are long or the contacts are near that face, a second hand stops with them flush with it (`tips_flush`): the
 ///   object may lie on something. It goes first among equally good ones; pairs one behind the other give one such hand.
+/// - With an `approach_direction` contacts are sought across it: round shapes in closed form, meshes along lines across
+/// it. A box, cylinder or capsule that is neither along nor across it is sampled as its mesh.
 /// - Pairs wider than max_opening are counted in `too_wide`, those too wide under the pads from everywhere as well. A
 /// part that leaves less than the wanted clearance is kept
 ///   (the clearance shrinks, see Hand::pregrasp_opening) with a lower quality.

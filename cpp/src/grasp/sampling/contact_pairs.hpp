@@ -35,7 +35,8 @@ struct ContactPairs {
   std::shared_ptr<const TriangleMesh> hull;  ///< The hull of a solid surface that is not convex; else null.
 };
 
-/// Analytic pairs of one box, sphere, cylinder or capsule; nothing for other shapes.
+/// Analytic pairs of one box, sphere, cylinder or capsule; nothing for other shapes, nor for those that lie askew to
+/// the approach direction.
 std::optional<ContactPairs> primitive_pairs(const LinkShape& shape, const Hand& hand,
                                             const GraspSamplerOptions& options);
 

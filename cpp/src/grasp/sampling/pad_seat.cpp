@@ -27,6 +27,7 @@ struct Touch {
   double reach = 0;             // How far outwards [m].
   double angle = kPi;           // The least between what is touched and the pad [rad].
   std::vector<Vector2d> where;  // Corners of what is touched, along the approach and across [m].
+  bool on_crests = false;       // The pad stands on several edges, by the hull over them.
 };
 
 /// What reaches less far outwards is behind the contacts [m].
@@ -189,6 +190,11 @@ double apart(const Touch& a, const Touch& b) {
   return (one.min() - other.max()).cwiseMax(other.min() - one.max()).cwiseMax(0).norm();
 }
 
+/// Angle between the closing axis and the line between the middles of what two pads touch, `width` apart [rad].
+double angle_of_middles(const Touch& a, const Touch& b, double width) {
+  return std::atan2((bounds_of(a.where).center() - bounds_of(b.where).center()).norm(), width);
+}
+
 }  // namespace
 
 TriangleBalls::TriangleBalls(const TriangleMesh& mesh) : mesh_(mesh) {
@@ -245,14 +251,21 @@ std::optional<PadSeat> PadSeats::seat(const ContactPair& pair, const Vector3d& a
   const double widest_edge = 2 * kGive / options_.friction;  // the slopes beside a wider one are within the cone
   const auto on_side = [&](int side) {
     Touch touched = touch(under, pieces[side], pair.width / 2, gap, solid_);
-    if (touched.angle > kStraight && !over[side].empty() && wider_than(widest_edge, touched.where))
-      touched.angle = std::min(touched.angle, angle_to_hull(over[side], touched.reach));
+    if (touched.angle > kStraight && !over[side].empty() && wider_than(widest_edge, touched.where)) {
+      const double on_hull = angle_to_hull(over[side], touched.reach);
+      touched.on_crests = on_hull < touched.angle;
+      touched.angle = std::min(touched.angle, on_hull);
+    }
     return touched;
   };
   const Touch touched[] = {on_side(0), on_side(1)};
   const double angle = std::max(touched[0].angle, touched[1].angle), width = touched[0].reach + touched[1].reach;
   if (angle > cone_ || apart(touched[0], touched[1]) > options_.friction * width) return {};
-  return PadSeat{pair.middle + (touched[0].reach - touched[1].reach) / 2 * pair.axis, width, 1 - angle / cone_};
+  // Faces that lie flat on the pads hold each other wherever they overlap; crests hold where they are touched.
+  const bool on_crests = touched[0].on_crests || touched[1].on_crests;
+  const double worst = on_crests ? std::max(angle, angle_of_middles(touched[0], touched[1], width)) : angle;
+  return PadSeat{pair.middle + (touched[0].reach - touched[1].reach) / 2 * pair.axis, width,
+                 std::max(0.0, 1 - worst / cone_)};
 }
 
 }  // namespace mmgrasp::detail

@@ -13,7 +13,8 @@ namespace mmgrasp::detail {
 struct PadSeat {
   Eigen::Vector3d middle;  ///< Midway between the pads, object frame [m].
   double width;            ///< Distance between the pads [m].
-  double alignment;        ///< As ContactPair's, of what the pads touch.
+  /// As ContactPair's, of what the pads touch and, on crests, of the line between the middles of that on either side.
+  double alignment;
 };
 
 /// A triangle that may come under pads at a pair of contacts, seen from their middle along the pair's first approach,

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "grasp/sampling/approach_direction.hpp"
 #include "grasp/sampling/contact_pairs.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 
@@ -58,15 +59,32 @@ ContactPairs box_pairs(const Box& box, double pad, const GraspSamplerOptions& op
   return result;
 }
 
-/// Pairs across the side of a cylinder or capsule: `approaches` diameters spread over half a turn (the flip gives the
-/// other half) at each height.
+/// Unit axes across a direction, spread over half a turn: the flip gives the other half.
+std::vector<Eigen::Vector3d> axes_across(const Eigen::Vector3d& direction, int count) {
+  const Eigen::Vector3d u = orthogonal_to(direction), v = direction.cross(u);
+  std::vector<Eigen::Vector3d> axes;
+  for (int i = 0; i < count; ++i) {
+    const double angle = kPi * i / count;
+    axes.push_back(std::cos(angle) * u + std::sin(angle) * v);
+  }
+  return axes;
+}
+
+/// Diameters of a cylinder or capsule: `approaches` of them, or the one that is across the approach direction as well.
+std::vector<Eigen::Vector3d> side_axes(const GraspSamplerOptions& options) {
+  const Eigen::Vector3d z = Eigen::Vector3d::UnitZ();
+  if (options.approach_direction && straight_across(z, *options.approach_direction))
+    return {z.cross(*options.approach_direction).normalized()};
+  return axes_across(z, options.approaches);
+}
+
+/// Pairs across the side of a cylinder or capsule, at each height.
 void add_side_pairs(double radius, double half_length, double pad, const GraspSamplerOptions& options,
                     ContactPairs& result) {
   for (const double z : pad_positions(half_length, options.positions, pad)) {
-    for (int i = 0; i < options.approaches; ++i) {
-      const double angle = kPi * i / options.approaches;
+    for (const Eigen::Vector3d& axis : side_axes(options)) {
       ContactPair pair;
-      pair.axis << std::cos(angle), std::sin(angle), 0;
+      pair.axis = axis;
       pair.middle.z() = z;
       pair.width = 2 * radius;
       result.pairs.push_back(pair);  // approaches start along z, which is orthogonal to every diameter
@@ -103,7 +121,8 @@ ContactPairs capsule_pairs(const Capsule& capsule, double pad, const GraspSample
   return result;
 }
 
-/// Diameters of a sphere: the three main axes, then a golden-angle spiral over the upper half.
+/// Diameters of a sphere: the three main axes, then a golden-angle spiral over the upper half; or those across the
+/// approach direction.
 ContactPairs sphere_pairs(const Sphere& sphere, const GraspSamplerOptions& options) {
   ContactPairs result;
   const auto add = [&](const Eigen::Vector3d& axis) {
@@ -113,6 +132,11 @@ ContactPairs sphere_pairs(const Sphere& sphere, const GraspSamplerOptions& optio
     pair.width = 2 * sphere.radius;
     result.pairs.push_back(pair);
   };
+  result.corners = box_corners(Eigen::Vector3d::Constant(sphere.radius));
+  if (options.approach_direction) {
+    for (const Eigen::Vector3d& axis : axes_across(*options.approach_direction, options.approaches)) add(axis);
+    return result;
+  }
   for (int axis = 0; axis < 3; ++axis) add(Eigen::Vector3d::Unit(axis));
   const int spread = options.approaches * options.positions;
   const double golden_angle = kPi * (3 - std::sqrt(5.0));
@@ -120,7 +144,6 @@ ContactPairs sphere_pairs(const Sphere& sphere, const GraspSamplerOptions& optio
     const double z = (i + 0.5) / spread, r = std::sqrt(1 - z * z);
     add(Eigen::Vector3d(r * std::cos(golden_angle * i), r * std::sin(golden_angle * i), z).normalized());
   }
-  result.corners = box_corners(Eigen::Vector3d::Constant(sphere.radius));
   return result;
 }
 
@@ -184,7 +207,12 @@ double pad_overlap(const ContactFace& face, const Eigen::Vector3d& approach, dou
 }
 
 std::optional<ContactPairs> primitive_pairs(const LinkShape& shape, const Hand& hand,
-                                            const GraspSamplerOptions& options) {
+                                            const GraspSamplerOptions& given) {
+  GraspSamplerOptions options = given;
+  if (given.approach_direction) {
+    options.approach_direction = shape.T_link_shape.linear().transpose() * given.approach_direction->normalized();
+    if (lies_askew(shape.shape, *options.approach_direction)) return {};
+  }
   const double pad = hand.finger_depth;
   std::optional<ContactPairs> result;
   if (const auto* box = std::get_if<Box>(&shape.shape)) result = box_pairs(*box, pad, options);

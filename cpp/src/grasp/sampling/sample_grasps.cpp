@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "grasp/sampling/approach_direction.hpp"
 #include "grasp/sampling/contact_pairs.hpp"
 #include "grasp/sampling/far_face.hpp"
 #include "grasp/sampling/pad_seat.hpp"
@@ -24,6 +25,7 @@ using detail::SampledGrasp;
 
 constexpr double kMostCandidates = 1e6;
 constexpr double kSamePlace = 1e-9;  // What differs by less is the same [m].
+constexpr double kUnitTolerance = 1e-3;
 
 /// Judges grasps of one object. Every part has weight 0.5, so their product orders grasps without ruling any out.
 class Judge {
@@ -99,20 +101,37 @@ class Candidates {
     if (!wide) {
       const double farthest = std::max(std::abs(options_.standoff), hand_.finger_depth / 2);
       const detail::NearPads near = seats_ ? seats_->near(pair, farthest) : detail::NearPads{};
-      const Eigen::Vector3d side = pair.axis.cross(pair.first_approach);
-      for (int i = 0; i < options_.approaches; ++i) {
-        const double angle = detail::kTwoPi * i / options_.approaches;
-        const Eigen::Vector3d approach = (std::cos(angle) * pair.first_approach + std::sin(angle) * side).normalized();
+      const std::vector<Eigen::Vector3d> approaches = approaches_to(pair);
+      for (std::size_t i = 0; i < approaches.size(); ++i) {
+        const Eigen::Vector3d& approach = approaches[i];
         for (const Standoff& standoff : standoffs(pair, approach)) {
           const std::optional<ContactPair> seated = seat(pair, approach, standoff.distance, near);
           if (!seated) continue;
           const bool fits = seated->width <= hand_.max_opening;
           (fits ? held : wide) = true;
-          if (fits) add_both_hands({index, i, false, standoff.tips_flush}, *seated, approach, standoff.distance);
+          if (fits)
+            add_both_hands({index, static_cast<int>(i), false, standoff.tips_flush}, *seated, approach,
+                           standoff.distance);
         }
       }
     }
     if (wide && !held) ++too_wide_;
+  }
+
+  /// From all around, or the one that is wanted where the pair lies across it.
+  std::vector<Eigen::Vector3d> approaches_to(const ContactPair& pair) const {
+    std::vector<Eigen::Vector3d> found;
+    if (options_.approach_direction) {
+      const auto along = detail::straight_across(pair.axis, options_.approach_direction->normalized());
+      if (along) found.push_back(*along);
+      return found;
+    }
+    const Eigen::Vector3d side = pair.axis.cross(pair.first_approach);
+    for (int i = 0; i < options_.approaches; ++i) {
+      const double angle = detail::kTwoPi * i / options_.approaches;
+      found.push_back((std::cos(angle) * pair.first_approach + std::sin(angle) * side).normalized());
+    }
+    return found;
   }
 
   /// Where the hand stops along an approach: as the options say and, where the tips of the pads would reach beyond the
@@ -193,6 +212,11 @@ void GraspSamplerOptions::check() const {
   require_count(max_grasps, "max_grasps", 1, 1'000'000);
   require_positive(friction, "friction");
   require_number(standoff, "standoff", "m");
+  if (approach_direction) {
+    require_numbers(*approach_direction, "approach_direction");
+    require(std::abs(approach_direction->norm() - 1) <= kUnitTolerance, "approach_direction norm",
+            approach_direction->norm(), "must be 1 within 1e-3");
+  }
 }
 
 SampledGrasps sample_grasps(const std::vector<LinkShape>& object, const Hand& hand,

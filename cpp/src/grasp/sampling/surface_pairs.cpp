@@ -15,6 +15,7 @@ namespace {
 constexpr int kMoreSamples = 8;  // So many times the samples are drawn at most, of a body that the hand can take at few
 constexpr int kFew = 4;          // places: fewer than one in so many samples.
 constexpr double kAsStraight = 0.02;  // Alignments that differ by less are as good.
+constexpr double kAlong = 1e-6;       // Lines that are so nearly along the approach [rad] are not across it.
 constexpr double kSamePlace = 1e-7;   // Hits nearer than this share of the body's size are one.
 
 /// Hits at which the line leaves the union of solids, when it enters that union at t = 0; none when the start is buried
@@ -55,6 +56,15 @@ Eigen::Vector3d sample_in_cone(const Eigen::Vector3d& axis, double half_angle, R
   return (cosine * axis + sine * (std::cos(around) * u + std::sin(around) * v)).normalized();
 }
 
+/// A line along which hands that come from the wanted direction may close: the part of it across that. Zero: none of it
+/// is.
+Eigen::Vector3d across_approach(const Eigen::Vector3d& line, const GraspSamplerOptions& options) {
+  if (!options.approach_direction) return line;
+  const Eigen::Vector3d wanted = options.approach_direction->normalized();
+  const Eigen::Vector3d across = line - wanted.dot(line) * wanted;
+  return across.norm() > kAlong ? Eigen::Vector3d(across.normalized()) : Eigen::Vector3d::Zero();
+}
+
 /// Angle between two lines [rad], in [0, pi / 2].
 double line_angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), std::abs(a.dot(b)));
@@ -93,7 +103,9 @@ void draw_pairs(const TriangleMesh& mesh, bool solid, double tolerance, double m
     const SurfacePoint start = points.draw(rng);
     const Eigen::Vector3d inward = -start.normal;
     // Along the normal the first contact is perfect; tilted lines also find wedges that need friction on both sides.
-    const Eigen::Vector3d direction = i % 2 == 0 ? inward : sample_in_cone(inward, cone, rng);
+    const Eigen::Vector3d drawn = i % 2 == 0 ? inward : sample_in_cone(inward, cone, rng);
+    const Eigen::Vector3d direction = across_approach(drawn, options);
+    if (direction.isZero(0)) continue;
     add_pairs_from(start, direction, caster, solid, tolerance, cone, pairs);
     for (; judged < pairs.size(); ++judged) fitting += pairs[judged].width <= max_opening;
   }

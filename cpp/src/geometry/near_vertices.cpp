@@ -15,7 +15,7 @@ namespace {
 constexpr int kBits = 22;  // The rounding is so many binary digits below the largest coordinate's power of two.
 constexpr int kCellLarger =
     2;  // Cells are larger by so many: a ball of the rounding meets two of them along each axis.
-constexpr int kZeroLevel = -100;  // Of coordinates that are all (nearly) zero.
+constexpr int kZeroLevel = -100;  // The level of coordinates that are all (nearly) zero.
 
 /// The least power of two above a vertex's largest coordinate, as its exponent.
 int level_of(const Eigen::Vector3d& vertex) {

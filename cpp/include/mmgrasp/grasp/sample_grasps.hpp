@@ -25,7 +25,7 @@ struct MMGRASP_EXPORT GraspSamplerOptions {
   /// Coulomb coefficient; an antipodal pair's normals lie within atan(friction) of its axis; > 0.
   double friction = 0.5;
   double standoff = 0.0;  ///< How far the tool frame stays outside the object's middle along the approach [m].
-  /// Of every grasp, to within kStraightApproach: a unit vector in the object's frame. None: from all around.
+  /// Every grasp approaches along this unit vector in the object's frame, within kStraightApproach. None: all around.
   std::optional<Eigen::Vector3d> approach_direction{};
   unsigned seed = 1;
   void check() const;

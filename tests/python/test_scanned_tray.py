@@ -17,7 +17,7 @@ import mmgrasp as mg
 from conftest import ASSETS
 from mmgrasp.cli import main
 from mmgrasp.scenario import load_scenario
-from mmgrasp.scenario.map_bodies import cells_around, large_pieces, merged, rectangles
+from mmgrasp.scenario.map_bodies import cells_around, edge_for, large_pieces, merged, rectangles
 
 SCENARIO = "asset:scenarios/scanned_tray.yaml"
 TRUTH: dict[
@@ -278,6 +278,22 @@ def test_boxes_cover_cells_once() -> None:
     found = {tuple(c) for c in cells_around(np.array([[0.5, 0.5, 0.5]]), np.array([2.0]), 1.0).tolist()}
     ball = [tuple(x - 2 for x in c) for c in np.ndindex(5, 5, 5)]
     assert found == {c for c in ball if sum(x * x for x in c) <= 4}
+
+
+def test_cells_around_a_large_surface_are_larger() -> None:
+    """A floor of 4 x 4 m: cells of 2 mm around it would be looked at a billion times."""
+    side = np.arange(-2, 2, 0.01)
+    points = np.stack(np.meshgrid(side, side, [0.5], indexing="ij"), axis=-1).reshape(-1, 3)
+    radii = np.full(len(points), 0.02)
+    assert edge_for(points[:100], radii[:100], 0.002) == 0.002
+    edge = edge_for(points, radii, 0.002)
+    assert edge in (0.008, 0.016, 0.032, 0.064)
+    cells = {tuple(cell) for cell in cells_around(points, radii, edge).tolist()}
+    assert len(cells) < 1_000_000
+    rng = np.random.default_rng(1)
+    for offset in rng.normal(size=(2000, 3)):
+        near = rng.choice(points) + 0.02 * rng.uniform() * offset / np.linalg.norm(offset)
+        assert tuple(np.floor(near / edge).astype(int).tolist()) in cells
 
 
 def test_pieces_are_counted_over_triangles() -> None:

@@ -105,7 +105,8 @@ def test_listed_grasps_and_wanted_directions_stay_as_they_are(
         ({"approach_direction": [0.0, 0.0]}, ["approach_direction", "list of 3 numbers"]),
         ({"approach_direction": -1}, ["approach_direction", "must be a list"]),
         ({"approach_directions": [0.0, 0.0, -1.0]}, ["did you mean approach_direction?"]),
-        ({"approach_direction": [0.0, 0.8, 0.6]}, ["approach_direction", "no grasp along it"]),
+        ({"approach_direction": [0.0, 0.8, 0.6]}, ["approach_direction", "no grasp: without it there are"]),
+        ({"standoff": 10}, ["grasp_options.standoff = 10", "no grasp: without it there are"]),
     ],
 )
 def test_bad_directions_are_refused_at_their_line(

@@ -382,14 +382,19 @@ def _check_graspable(name: str, kind: PartType, grasps: list[Grasp], gripper: Ha
         return
     if kind.why_none:
         kind.node.fail(f"part {name} has no grasp: {kind.why_none}")
-    if "approach_direction" in kind.grasp_options:
-        wider = f" ({kind.too_wide} are wider than its opening of {gripper.max_opening:g} m)" if kind.too_wide else ""
-        kind.node["grasp_options"]["approach_direction"].fail(
-            f"part {name} has no grasp along it: no two opposite surfaces across it fit the gripper{wider}"
-        )
+    _blame_an_option(name, kind, gripper)
     if kind.too_wide:
         kind.node.fail(
             f"part {name} is larger than the gripper: none of {kind.too_wide} grasps fits its opening of "
             f"{gripper.max_opening:g} m"
         )
     kind.node.fail(f"part {name} has no grasp: no two opposite surfaces were found for the gripper")
+
+
+def _blame_an_option(name: str, kind: PartType, gripper: Hand) -> None:
+    """Fails at the first option of the sampler without which the part would have grasps."""
+    for key in kind.grasp_options:
+        rest = {other: value for other, value in kind.grasp_options.items() if other != key}
+        found, _ = _core._sample_grasps(kind.shapes, gripper, **rest)
+        if found:
+            kind.node["grasp_options"][key].fail(f"leaves part {name} no grasp: without it there are {len(found)}")

@@ -130,6 +130,35 @@ double beyond_far_face(const Grasp& grasp, const Hand& hand, const Reach& reach)
   return approach.dot(grasp.T_object_hand.translation()) + hand.finger_depth / 2 - reach(approach);
 }
 
+// Pads that stay farther before the contacts than they are long meet nothing, unless the face reaches so far back.
+TEST(SampleGrasps, PadsMeetTheFacesWhateverTheStandoff) {
+  const Hand gripper = wide_gripper();
+  GraspSamplerOptions options = all_kept();
+  for (const double standoff : {0.06, 0.1, 10.0}) {
+    options.standoff = standoff;
+    EXPECT_TRUE(sample_grasps({shape_at(Box{Eigen::Vector3d::Constant(0.04)})}, gripper, options).grasps.empty());
+    EXPECT_TRUE(sample_grasps({shape_at(Sphere{0.04})}, gripper, options).grasps.empty());
+    EXPECT_TRUE(sample_grasps({shape_at(Cylinder{0.02, 0.06})}, gripper, options).grasps.empty());
+  }
+  const Eigen::Vector3d half(0.02, 0.02, 0.1);
+  for (const double standoff : {0.0, 0.012, 0.03, 0.08}) {
+    options.standoff = standoff;
+    const std::vector<Grasp> grasps = sample_grasps({shape_at(Box{2 * half})}, gripper, options).grasps;
+    EXPECT_FALSE(grasps.empty()) << standoff;
+    for (const Grasp& grasp : grasps) {
+      const Eigen::Vector3d closing = closing_in_object(grasp, gripper), approach = approach_in_object(grasp, gripper);
+      const Eigen::Vector3d across = closing.cross(approach);
+      int on_face = 0;
+      for (int i = 0; i < 41 * 41; ++i) {
+        const Eigen::Vector3d on_pad = approach * 0.015 * (i / 41 - 20) / 20 + across * 0.01 * (i % 41 - 20) / 20;
+        const Eigen::Vector3d p = grasp.T_object_hand.translation() + on_pad;
+        on_face += ((p - closing.dot(p) * closing).cwiseAbs() - half).maxCoeff() <= 1e-9;
+      }
+      EXPECT_GT(on_face, 0) << standoff;
+    }
+  }
+}
+
 TEST(SampleGrasps, TipsAreFlushWithTheFarFaceOfAFlatBox) {
   Hand gripper = wide_gripper();
   gripper.finger_depth = 0.04;

@@ -26,6 +26,7 @@ using detail::SampledGrasp;
 constexpr double kMostCandidates = 1e6;
 constexpr double kSamePlace = 1e-9;  // What differs by less is the same [m].
 constexpr double kUnitTolerance = 1e-3;
+constexpr double kLeastOverlap = 1e-6;  // Share of a pad that lies on a face.
 
 /// Judges grasps of one object. Every part has weight 0.5, so their product orders grasps without ruling any out.
 class Judge {
@@ -153,10 +154,16 @@ class Candidates {
     return flush_.insert(rounded).second;
   }
 
+  /// Whether pads meet a primitive at the pair's contacts, or at the faces that these lie on.
+  bool are_on_face(const ContactPair& pair, const Eigen::Vector3d& approach, double standoff) const {
+    if (!pair.face) return std::abs(standoff) <= hand_.finger_depth / 2 + kSamePlace;
+    return detail::pad_overlap(*pair.face, approach, standoff, hand_.finger_depth, hand_.finger_width) > kLeastOverlap;
+  }
+
   /// The pair where the pads meet the part, if they do not on its contacts alone.
   std::optional<ContactPair> seat(const ContactPair& pair, const Eigen::Vector3d& approach, double standoff,
                                   const detail::NearPads& near) const {
-    if (!seats_) return pair;
+    if (!seats_) return are_on_face(pair, approach, standoff) ? std::optional(pair) : std::nullopt;
     const std::optional<detail::PadSeat> seat = seats_->seat(pair, approach, standoff, near);
     if (!seat) return {};
     ContactPair seated = pair;

@@ -25,8 +25,7 @@ const std::vector<OptionField<Options>>& supply_fields() {
                       "cells farther from the tray's middle are not tried [m]; 0: the arm's reach"),
       option<Options>("ik_seeds", &Options::grid, &BaseGridOptions::ik_seeds,
                       "database configurations refined for each grasp and base pose, more where a part has fewer than "
-                      "16 grasps; arms "
-                      "with closed-form IK take all branches"),
+                      "128 / ik_seeds grasps; arms with closed-form IK take all branches"),
       option<Options>("positioning_uncertainty", &Options::positioning_uncertainty,
                       "radius of the disc in which the base may come to stand [m]"),
       option<Options>("approach_distance", &Options::approach_distance, "straight move from pre-grasp to grasp [m]"),
@@ -75,6 +74,7 @@ const std::vector<OptionField<PickOptions>>& pick_fields() {
 }
 
 void bind_problem(py::module_& m) {
+  m.def("_ik_seeds_of_a_grasp", &ik_seeds_of_a_grasp, py::arg("asked"), py::arg("grasps_of_parts"));
   m.def("_supply_option_table", [] { return option_table(supply_fields()); });
   m.def("_supply_option_bounds", [] { return supply_options().bounds(); });
   m.def(

@@ -39,10 +39,10 @@ bool must_sleep() {
 }
 
 /// What a call said last: heard again after a second without news, so that a silent stage is seen to go on.
-class LastWord {
+class RepeatedProgress {
  public:
   /// `news`: what is to be handed over, if anything.
-  void say_again(std::optional<std::pair<std::string, double>>& news) {
+  void repeat_if_silent(std::optional<std::pair<std::string, double>>& news) {
     if (news)
       said_ = news;
     else if (silence_.seconds() >= kSilence)
@@ -69,7 +69,7 @@ void end_calls_at_exit() {
 
 bool LongCall::wait() {
   const Waiting waiting;
-  LastWord last;
+  RepeatedProgress last;
   try {  // all that runs Python may raise KeyboardInterrupt, and nothing may leave before the thread has ended
     while (true) {
       {
@@ -77,7 +77,7 @@ bool LongCall::wait() {
         if (must_sleep()) leave();
         std::unique_lock lock(mutex_);
         if (changed_.wait_for(lock, kPoll, [this] { return done_; })) return true;
-        last.say_again(latest_);
+        last.repeat_if_silent(latest_);
       }
       if (PyErr_CheckSignals() != 0) break;
       hand_over_progress();

@@ -13,7 +13,7 @@ from rich.console import Console
 import mmgrasp as mg
 from mmgrasp.cli.tables import print_verdict, summary
 from mmgrasp.part_supply import PlanVerdict
-from mmgrasp.part_supply.premises import premises_text
+from mmgrasp.part_supply.premises import premises, premises_text
 
 
 def test_both_sides_prove_the_least_number(small_plan_dict: dict[str, Any]) -> None:
@@ -48,6 +48,19 @@ def test_markup_in_names_is_text_in_tables(small: dict[str, Any], tmp_path: Path
     console.print(summary(mg.plan_part_supply(path)))
     text = console.export_text()
     assert "[bold]a[/nothing]" in text and "[red]b[/x]" in text
+
+
+def test_parts_with_few_grasps_are_tried_in_more_postures(small_plan_dict: dict[str, Any]) -> None:
+    plan = copy.deepcopy(small_plan_dict)
+    plan["scenario"]["options"]["ik_seeds"] = 8
+    parts = [part for part in plan["scenario"]["parts"] if part["grasps"]]
+    for count, seeds in ((1, 128), (5, 26), (16, 8), (200, 8)):
+        for part in parts:
+            part["grasps"] = [part["grasps"][0]] * 300
+        parts[-1]["grasps"] = [parts[-1]["grasps"][0]] * count
+        assert premises(plan)["ik_seeds"] == seeds
+    plan["scenario"]["options"]["ik_seeds"] = 30
+    assert premises(plan)["ik_seeds"] == 30
 
 
 def test_premises_of_the_proof(small_plan: mg.part_supply.ScenarioPlan, small_plan_dict: dict[str, Any]) -> None:

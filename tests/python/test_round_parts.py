@@ -107,6 +107,7 @@ def test_listed_grasps_and_wanted_directions_stay_as_they_are(
         ({"approach_directions": [0.0, 0.0, -1.0]}, ["did you mean approach_direction?"]),
         ({"approach_direction": [0.0, 0.8, 0.6]}, ["approach_direction", "no grasp: without it there are"]),
         ({"standoff": 10}, ["grasp_options.standoff = 10", "no grasp: without it there are"]),
+        ({"standoff": 10, "approach_direction": [0.0, 0.8, 0.6]}, ["no grasp: without these options there are"]),
     ],
 )
 def test_bad_directions_are_refused_at_their_line(

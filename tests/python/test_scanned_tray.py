@@ -16,7 +16,7 @@ import yaml
 import mmgrasp as mg
 from conftest import ASSETS
 from mmgrasp.cli import main
-from mmgrasp.scenario import load_scenario
+from mmgrasp.scenario import load_scenario, map_bodies
 from mmgrasp.scenario.map_bodies import cells_around, edge_for, large_pieces, merged, rectangles
 
 SCENARIO = "asset:scenarios/scanned_tray.yaml"
@@ -239,7 +239,9 @@ def test_frames_that_cannot_be_rendered_are_refused(
 
 
 @pytest.mark.slow
-def test_what_stands_beside_the_parts_is_an_obstacle(planned: mg.scenario.Scenario, tmp_path: Path) -> None:
+def test_what_stands_beside_the_parts_is_an_obstacle(
+    planned: mg.scenario.Scenario, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """The same map in a scenario that knows nothing of the table's other half: what it shows there becomes a body."""
     assert planned.trays[0].scan is not None
     folder = tmp_path / "map"
@@ -251,6 +253,10 @@ def test_what_stands_beside_the_parts_is_an_obstacle(planned: mg.scenario.Scenar
     path.write_text(yaml.safe_dump(values))
     scenario = load_scenario(path)
     rest = next(o for o in scenario.obstacles if o.name == "scan mixed")
+    with monkeypatch.context() as few:
+        few.setattr(map_bodies, "_MOST_CELLS", 2000)
+        coarse = next(o for o in load_scenario(path).obstacles if o.name == "scan mixed")
+    assert len(coarse.shapes) < len(rest.shapes) / 2
     bounds = np.array([s.bounds for s in rest.shapes])
     assert len(rest.shapes) > 10 and (np.abs(bounds[:, :, 1]).max(axis=1) > 0.19).all()
     assert bounds[:, 1, 2].max() < 0.77 and bounds[:, 0, 2].min() > 0.70

@@ -189,6 +189,12 @@ Triangles with_vertices(Triangles triangles, const std::vector<int>& same) {
   return triangles;
 }
 
+/// Whether some shell of a closed mesh is more than a sheet that was stored from both sides.
+bool has_a_solid(const std::vector<Eigen::Vector3d>& vertices, const Triangles& triangles) {
+  const std::vector<bool> thin = thin_shells(vertices, triangles);
+  return std::count(thin.begin(), thin.end(), false) > 0;
+}
+
 /// Whether the triangles bound a solid once vertices on either side of their seams are the same; then they are joined
 /// there, and `joined` says for each vertex which one stands for it. Sheets stored from both sides bound none.
 bool close_seams(const std::vector<Eigen::Vector3d>& vertices, Triangles& triangles, EnclosedBodies& enclosed,
@@ -196,9 +202,12 @@ bool close_seams(const std::vector<Eigen::Vector3d>& vertices, Triangles& triang
   const std::vector<int> same = joined_at_seams(vertices, triangles);
   if (same.empty()) return false;
   Triangles closed = with_vertices(triangles, same);
-  if (!close_without_repeats(vertices, closed, enclosed) && !close(vertices, closed, enclosed)) return false;
-  if (is_thin(vertices, closed)) return false;
+  EnclosedBodies found = enclosed;
+  if (!close_without_repeats(vertices, closed, found) && !close(vertices, closed, found)) return false;
+  const std::vector<bool> thin = thin_shells(vertices, closed);
+  if (std::count(thin.begin(), thin.end(), true) > 0) return false;
   triangles = std::move(closed);
+  enclosed = found;
   joined = same;
   return true;
 }
@@ -237,6 +246,7 @@ std::shared_ptr<const TriangleMesh> clean_mesh(RawMesh raw, const std::string& s
       std::remove_if(triangles.begin(), triangles.end(), [&](const auto& t) { return has_no_area(mesh->vertices, t); }),
       triangles.end());
   if (!mesh->closed) mesh->closed = close(mesh->vertices, triangles, enclosed);
+  if (mesh->closed) mesh->closed = has_a_solid(mesh->vertices, triangles);
   if (faults != nullptr) {
     faults->enclosed_bodies = enclosed.count;
     faults->turned_triangles = count_turned(file, triangles);

@@ -40,13 +40,15 @@ std::vector<int> border_vertices(const std::vector<std::array<int, 3>>& triangle
 std::vector<int> joined_at_seams(const std::vector<Eigen::Vector3d>& vertices,
                                  const std::vector<std::array<int, 3>>& triangles) {
   const std::vector<int> border = border_vertices(triangles);
-  std::vector<int> same = near_vertices(vertices, border);
+  std::vector<int> same = near_vertices(vertices, roundings(vertices, triangles), border);
   const bool joins = std::any_of(border.begin(), border.end(), [&](int vertex) { return same[vertex] != vertex; });
   return joins ? same : std::vector<int>{};
 }
 
-bool is_thin(const std::vector<Eigen::Vector3d>& vertices, const std::vector<std::array<int, 3>>& triangles) {
+std::vector<bool> thin_shells(const std::vector<Eigen::Vector3d>& vertices,
+                              const std::vector<std::array<int, 3>>& triangles) {
   const Shells shells = find_shells(triangles);
+  const std::vector<double> rounding = roundings(vertices, triangles);
   std::vector<double> volume(shells.count, 0), thinnest(shells.count, 0);
   std::vector<int> first(shells.count, -1);  // volumes are measured from a shell's own vertex
   for (std::size_t i = 0; i < triangles.size(); ++i) {
@@ -57,11 +59,12 @@ bool is_thin(const std::vector<Eigen::Vector3d>& vertices, const std::vector<std
     volume[shell] += (a - origin).dot((b - origin).cross(c - origin)) / 6;
     // Each of a sheet's sides has half of the area.
     const double area = (b - a).cross(c - a).norm() / 2;
-    thinnest[shell] += area / 2 * kThin * std::max({rounding_of(a), rounding_of(b), rounding_of(c)});
+    const auto& [i0, i1, i2] = triangles[i];
+    thinnest[shell] += area / 2 * kThin * std::max({rounding[i0], rounding[i1], rounding[i2]});
   }
-  for (int shell = 0; shell < shells.count; ++shell)
-    if (std::abs(volume[shell]) <= thinnest[shell]) return true;
-  return false;
+  std::vector<bool> thin(shells.count);
+  for (int shell = 0; shell < shells.count; ++shell) thin[shell] = std::abs(volume[shell]) <= thinnest[shell];
+  return thin;
 }
 
 }  // namespace mmgrasp::detail

@@ -11,8 +11,9 @@ namespace mmgrasp::detail {
 std::vector<int> joined_at_seams(const std::vector<Eigen::Vector3d>& vertices,
                                  const std::vector<std::array<int, 3>>& triangles);
 
-/// Whether some shell of a closed, consistently oriented mesh is about as thin as its vertices are rounded: a sheet
-/// that was stored from both sides, and no solid.
-bool is_thin(const std::vector<Eigen::Vector3d>& vertices, const std::vector<std::array<int, 3>>& triangles);
+/// Which shells of a closed, consistently oriented mesh are about as thin as its vertices are rounded: sheets that were
+/// stored from both sides, and no solids.
+std::vector<bool> thin_shells(const std::vector<Eigen::Vector3d>& vertices,
+                              const std::vector<std::array<int, 3>>& triangles);
 
 }  // namespace mmgrasp::detail

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any, NotRequired, TypedDict
 
-_POSTURES_OF_PART = 128  # tried at a part at least, whatever the number of its grasps
+from .. import _core
 
 
 class Premises(TypedDict):
@@ -37,17 +37,13 @@ def premises(plan: dict[str, Any]) -> Premises:
         "cell": plan["grid"]["resolution"],
         "max_distance": options.get("grid_max_distance", 0.0),
         "grasps": sum(len(part["grasps"]) for part in scenario["parts"]),
-        "ik_seeds": _ik_seeds_of_a_grasp(options.get("ik_seeds", 0), scenario["parts"]),
+        "ik_seeds": _core._ik_seeds_of_a_grasp(options["ik_seeds"], [len(part["grasps"]) for part in scenario["parts"]])
+        if "ik_seeds" in options
+        else 0,
         "database": dict(reach),
         "search_finished": plan["proven_minimal"],
     }
     return {**known, "chosen_parts": chosen} if chosen else known
-
-
-def _ik_seeds_of_a_grasp(asked: int, parts: list[dict[str, Any]]) -> int:
-    """How many configurations were refined for each grasp; 0: the plan does not say."""
-    fewest = min((len(part["grasps"]) for part in parts if part["grasps"]), default=_POSTURES_OF_PART)
-    return max(asked, math.ceil(_POSTURES_OF_PART / fewest)) if asked else 0
 
 
 def premises_text(said: Premises) -> str:

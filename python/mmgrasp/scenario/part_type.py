@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from .._core import Grasp, Hand, LinkShape
+from .._progress import Progress
 from ..documents.reading import Node
 from .straight_down import with_grasps_down
 
@@ -27,6 +28,8 @@ class PartType:
     gripper: Hand | None = None
     """Whose pads the grasps were sampled for; None: they are listed, or a hand's of suction cups."""
     grasp_options: dict[str, Any] = field(default_factory=dict)
+    progress: Progress = None
+    """Hears that its grasps are sought."""
     _by_direction: dict[tuple[float, ...], list[Grasp]] = field(default_factory=dict)
 
     @property
@@ -43,7 +46,7 @@ class PartType:
         if known not in self._by_direction:
             down /= np.linalg.norm(down)
             self._by_direction[known] = with_grasps_down(
-                self.shapes, self.gripper, self.grasps, down, self.grasp_options
+                self.shapes, self.gripper, self.grasps, down, self.grasp_options, self.progress
             )
         return self._by_direction[known]
 

@@ -8,17 +8,23 @@ import numpy as np
 
 from .. import _core
 from .._core import Grasp, Hand, LinkShape
+from .._progress import Progress
 
-FEW = 8  # grasps straight down; where there are fewer, more are drawn
-MORE = 24  # grasps at most that join those of the type
-DRAWN = 8 * MORE  # of which some have no room below the part
+MIN_STRAIGHT = 8  # grasps straight down; where there are fewer, more are drawn
+MOST_ADDED = 24  # grasps at most that join those of the type
+MOST_DRAWN = 8 * MOST_ADDED  # of which some have no room below the part
 FLUSH = 1e-6  # tips of pads reach no farther beyond the part's far face [m]
 
 
 def with_grasps_down(
-    shapes: list[LinkShape], gripper: Hand, grasps: list[Grasp], down: np.ndarray, options: dict[str, Any]
+    shapes: list[LinkShape],
+    gripper: Hand,
+    grasps: list[Grasp],
+    down: np.ndarray,
+    options: dict[str, Any],
+    progress: Progress = None,
 ) -> list[Grasp]:
-    """The grasps of a part and, where fewer than FEW of them can be taken straight `down` (a unit vector in the part's frame), others that can.
+    """The grasps of a part and, where fewer than MIN_STRAIGHT of them can be taken straight `down` (a unit vector in the part's frame), others that can.
 
     `options` are those of the sampler; the worst grasps that are not straight down make room for what is drawn.
     """
@@ -33,12 +39,13 @@ def with_grasps_down(
         return bool(is_straight and tips <= far_face + FLUSH)
 
     straight = [grasp for grasp in grasps if is_usable(grasp)]
-    if len(straight) >= FEW:
+    if len(straight) >= MIN_STRAIGHT:
         return grasps
-    drawn = _core.sample_grasps(shapes, gripper, **{**options, "approach_direction": down, "max_grasps": DRAWN})
+    asked = {**options, "approach_direction": down, "max_grasps": MOST_DRAWN}
+    drawn, _ = _core._sample_grasps(shapes, gripper, progress=progress, **asked)
     new = [grasp for grasp in drawn if is_usable(grasp) and not _is_among(straight, grasp)]
     most = options.get("max_grasps", _core._grasp_option_table()["max_grasps"][0])
-    new = new[: min(MORE, most - len(straight))]
+    new = new[: min(MOST_ADDED, most - len(straight))]
     if not new:
         return grasps
     others = [grasp for grasp in grasps if not is_usable(grasp)][: most - len(straight) - len(new)]

@@ -73,7 +73,9 @@ def read_part_types(node: Node, gripper: Hand, progress: Progress = None) -> dic
             types[name] = PartType(shapes, grasps, too_wide, entry, mass)
         else:
             grasps, too_wide = _core._sample_grasps(shapes, gripper, progress=tell, **options)
-            types[name] = PartType(shapes, grasps, too_wide, entry, mass, gripper=gripper, grasp_options=options)
+            types[name] = PartType(
+                shapes, grasps, too_wide, entry, mass, gripper=gripper, grasp_options=options, progress=tell
+            )
     return types
 
 
@@ -382,7 +384,7 @@ def _check_graspable(name: str, kind: PartType, grasps: list[Grasp], gripper: Ha
         return
     if kind.why_none:
         kind.node.fail(f"part {name} has no grasp: {kind.why_none}")
-    _blame_an_option(name, kind, gripper)
+    _refuse_at_option(name, kind, gripper)
     if kind.too_wide:
         kind.node.fail(
             f"part {name} is larger than the gripper: none of {kind.too_wide} grasps fits its opening of "
@@ -391,10 +393,15 @@ def _check_graspable(name: str, kind: PartType, grasps: list[Grasp], gripper: Ha
     kind.node.fail(f"part {name} has no grasp: no two opposite surfaces were found for the gripper")
 
 
-def _blame_an_option(name: str, kind: PartType, gripper: Hand) -> None:
-    """Fails at the first option of the sampler without which the part would have grasps."""
+def _refuse_at_option(name: str, kind: PartType, gripper: Hand) -> None:
+    """Fails at the first option of the sampler without which the part would have grasps, or at all of them together."""
+
+    def count_with(options: dict[str, Any]) -> int:
+        return len(_core._sample_grasps(kind.shapes, gripper, progress=kind.progress, **options)[0])
+
     for key in kind.grasp_options:
-        rest = {other: value for other, value in kind.grasp_options.items() if other != key}
-        found, _ = _core._sample_grasps(kind.shapes, gripper, **rest)
-        if found:
-            kind.node["grasp_options"][key].fail(f"leaves part {name} no grasp: without it there are {len(found)}")
+        count = count_with({other: value for other, value in kind.grasp_options.items() if other != key})
+        if count:
+            kind.node["grasp_options"][key].fail(f"leaves part {name} no grasp: without it there are {count}")
+    if len(kind.grasp_options) > 1 and (count := count_with({})):
+        kind.node["grasp_options"].fail(f"leaves part {name} no grasp: without these options there are {count}")

@@ -24,7 +24,9 @@ struct MMGRASP_EXPORT GraspSamplerOptions {
   int max_grasps = 200;  ///< Best kept, spread over approach directions; > 0.
   /// Coulomb coefficient; an antipodal pair's normals lie within atan(friction) of its axis; > 0.
   double friction = 0.5;
-  double standoff = 0.0;  ///< How far the tool frame stays outside the object's middle along the approach [m].
+  /// How far the tool frame stays before the contacts along the approach [m]. Pads that then miss them (farther off
+  /// than half their length), or a box' faces, hold nothing: such grasps are left out.
+  double standoff = 0.0;
   /// Every grasp approaches along this unit vector in the object's frame, within kStraightApproach. None: all around.
   std::optional<Eigen::Vector3d> approach_direction{};
   unsigned seed = 1;

@@ -44,8 +44,8 @@ struct MMGRASP_EXPORT Gripper {
 
   void check() const;  ///< Throws InvalidInput naming field, value and rule.
   /// Whether it holds a segment, by (5.2) of P1 with <= in place of <: the printed form would refuse a part as wide as
-  /// the largest opening, which P1's own grippers take; and no smaller opening than it allows. Lengths within 1e-9 m
-  /// count as equal.
+  /// the largest opening, which P1's own grippers take; and neither a smaller opening nor a longer stroke than it
+  /// allows. Lengths within 1e-9 m count as equal.
   bool holds(const SegmentRequirement& requirement) const;
   /// Half the pad's length along the approach lies on either side of the tool frame: the last 20 mm, or the finger.
   double pad_length() const;

@@ -56,7 +56,7 @@ struct MMGRASP_EXPORT SegmentFate {
   std::string name;               ///< Its name as segment_names() gives it: "cylinder_1".
   std::string kind;               ///< Its primitive's name.
   int fingers = 0;                ///< 2, 3, or 0: no gripper suits its primitive.
-  int tried = 0;                  ///< Grasps of it.
+  int tried = 0;                  ///< Grasps of it, each once for every stroke of the drives that suit it.
   int free = 0;                   ///< How many of those have some finger length.
   std::string refused;            ///< Why it cannot be held, or what most of its grasps fell by; empty when held.
   std::vector<int> requirements;  ///< Numbers of the plan's requirements.

@@ -52,10 +52,16 @@ struct MMGRASP_EXPORT BaseGridOptions {
   double resolution = 0.05;  ///< Cell edge [m]; > 0.
   double max_distance =
       0.0;  ///< Cells whose centre is farther than this from the tray's middle are not tried [m]; 0: the arm's reach.
-  /// Database configurations refined for each grasp and base pose; > 0. More are where a part has so few grasps that
-  /// they would make fewer than 128 postures.
+  /// Database configurations refined for each grasp and base pose; > 0. More are where a part has few grasps:
+  /// ik_seeds_of_a_grasp().
   int ik_seeds = 8;
 };
+
+/// Configurations of the database that are refined for each grasp: as many as `asked`, and more where the part with the
+/// fewest grasps would be tried in fewer than 128 postures (its region lacked cells then from which a search from
+/// random starts reaches it). `grasps_of_parts`: how many each target part has, blocked ones included; parts without
+/// any do not count.
+MMGRASP_EXPORT int ik_seeds_of_a_grasp(int asked, const std::vector<int>& grasps_of_parts);
 
 /// What a part-supply plan must allow for (an imprecise base, straight moves at a part), and the budgets of its stages.
 struct MMGRASP_EXPORT PartSupplyOptions {

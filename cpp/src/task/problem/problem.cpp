@@ -1,6 +1,7 @@
 #include "mmgrasp/task/problem.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -11,6 +12,7 @@ namespace mmgrasp {
 namespace {
 
 constexpr std::size_t kMostHeadings = 360;  // of a tray
+constexpr int kPosturesOfPart = 128;        // tried at a part at least
 
 void check_part(const Part& part, const std::string& tray) {
   const std::string field = "part '" + part.name + "' in tray '" + tray + "'";
@@ -66,6 +68,14 @@ void check_trays(const PartSupplyProblem& problem) {
 }
 
 }  // namespace
+
+int ik_seeds_of_a_grasp(int asked, const std::vector<int>& grasps_of_parts) {
+  int fewest = kPosturesOfPart;
+  for (const int count : grasps_of_parts) {
+    if (count > 0) fewest = std::min(fewest, count);
+  }
+  return std::max(asked, (kPosturesOfPart + fewest - 1) / fewest);
+}
 
 void check_arrival_covariance(const Eigen::Matrix3d& covariance) {
   const char* field = "arrival_covariance";

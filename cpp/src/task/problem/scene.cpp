@@ -29,13 +29,13 @@ std::vector<PartRef> target_parts(const PartSupplyProblem& problem, TrayId tray)
 }
 
 int ik_seeds_of_a_grasp(const PartSupplyProblem& problem) {
-  int fewest = kPosturesOfPart;
+  std::vector<int> grasps;
   for (const Tray& tray : problem.trays) {
     for (const Part& part : tray.parts) {
-      if (part.target && !part.grasps.empty()) fewest = std::min(fewest, static_cast<int>(part.grasps.size()));
+      if (part.target) grasps.push_back(static_cast<int>(part.grasps.size()));
     }
   }
-  return std::max(problem.options.grid.ik_seeds, (kPosturesOfPart + fewest - 1) / fewest);
+  return mmgrasp::ik_seeds_of_a_grasp(problem.options.grid.ik_seeds, grasps);
 }
 
 World world_with_parts(const PartSupplyProblem& problem, const std::vector<PartRef>& parts) {

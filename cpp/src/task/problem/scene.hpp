@@ -8,10 +8,6 @@
 
 namespace mmgrasp::detail {
 
-/// Postures tried at a part, whatever the number of its grasps. With eight at the one grasp of a part its region lacked
-/// cells from which a search from random starts reaches it.
-constexpr int kPosturesOfPart = 128;
-
 inline const Tray& tray_of(const PartSupplyProblem& problem, TrayId tray) {
   return problem.trays[tray];
 }
@@ -26,8 +22,7 @@ std::vector<PartRef> all_parts(const PartSupplyProblem& problem);
 /// The target parts of one tray, in order.
 std::vector<PartRef> target_parts(const PartSupplyProblem& problem, TrayId tray);
 
-/// Configurations of the database refined for each grasp: `ik_seeds`, and more where a part has so few grasps that the
-/// arm would be tried in fewer than kPosturesOfPart postures at it.
+/// ik_seeds_of_a_grasp() of the target parts.
 MMGRASP_EXPORT int ik_seeds_of_a_grasp(const PartSupplyProblem& problem);
 
 /// The scene with these parts in place.

@@ -13,7 +13,7 @@ import pytest
 import mmgrasp as mg
 from conftest import edited
 from flat_parts import PAD, box, low_tray, prism
-from mmgrasp.scenario.straight_down import FEW, MORE
+from mmgrasp.scenario.straight_down import MIN_STRAIGHT, MOST_ADDED
 from round_parts import ball, bolt, bolt_pitch, drawn_round_part, rod
 
 TILT = math.radians(15)
@@ -56,7 +56,7 @@ def test_parts_that_lie_have_grasps_straight_down(
 ) -> None:
     scenario = mg.load_scenario(one_part(name, storeroom, write))
     part = scenario.trays[0].tray.parts[0]
-    assert len(straight_down(part, scenario.setup.gripper)) >= FEW
+    assert len(straight_down(part, scenario.setup.gripper)) >= MIN_STRAIGHT
     assert len(part.grasps) <= 200
     qualities = [grasp.quality for grasp in part.grasps]
     assert qualities == sorted(qualities, reverse=True)
@@ -67,8 +67,8 @@ def test_no_more_grasps_than_were_asked_for(most: int, storeroom: dict[str, Any]
     scenario = mg.load_scenario(one_part("rod", storeroom, write, max_grasps=most))
     part = scenario.trays[0].tray.parts[0]
     assert len(part.grasps) == most
-    assert len(straight_down(part, scenario.setup.gripper)) >= min(most, FEW)
-    assert len(straight_down(part, scenario.setup.gripper)) <= FEW + MORE
+    assert len(straight_down(part, scenario.setup.gripper)) >= min(most, MIN_STRAIGHT)
+    assert len(straight_down(part, scenario.setup.gripper)) <= MIN_STRAIGHT + MOST_ADDED
 
 
 def test_the_same_pose_has_the_same_grasps(storeroom: dict[str, Any], write: Callable[..., Path]) -> None:

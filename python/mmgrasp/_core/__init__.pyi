@@ -3112,7 +3112,7 @@ class PartSupplyProblem:
         Keyword options:
             grid_resolution: float = 0.05  # cell edge of the base grid [m]
             grid_max_distance: float = 0.0  # cells farther from the tray's middle are not tried [m]; 0: the arm's reach
-            ik_seeds: int = 8  # database configurations refined for each grasp and base pose, more where a part has fewer than 16 grasps; arms with closed-form IK take all branches
+            ik_seeds: int = 8  # database configurations refined for each grasp and base pose, more where a part has fewer than 128 / ik_seeds grasps; arms with closed-form IK take all branches
             positioning_uncertainty: float = 0.1  # radius of the disc in which the base may come to stand [m]
             approach_distance: float = 0.08  # straight move from pre-grasp to grasp [m]
             lift_height: float = 0.12  # straight upward move after closing [m]
@@ -7075,6 +7075,8 @@ def _grasp_search_option_table() -> dict[str, typing.Any]:
 def _graspability_option_table() -> dict[str, typing.Any]:
     ...
 def _ik_option_table() -> dict[str, typing.Any]:
+    ...
+def _ik_seeds_of_a_grasp(asked: int, grasps_of_parts: collections.abc.Sequence[int]) -> int:
     ...
 def _manipulation_option_table() -> dict[str, typing.Any]:
     ...

@@ -73,8 +73,8 @@ def surface(corners: np.ndarray) -> float:
 
 
 def test_binary_stl_keeps_its_surface(data: Path) -> None:
-    """But for triangles that are there twice, of which it may have one."""
-    checked = 0
+    """But for triangles that are there twice, of which it may have one, and corners that single precision had parted."""
+    checked = exact = 0
     for path in files(data, ".stl"):
         content = path.read_bytes()
         count = struct.unpack_from("<I", content, 80)[0] if len(content) >= 84 else -1
@@ -85,10 +85,13 @@ def test_binary_stl_keeps_its_surface(data: Path) -> None:
         assert len(mesh.triangles) <= count
         corners = np.unique(np.sort(facets.view([("x", "<f4"), ("y", "<f4"), ("z", "<f4")])[..., 0], axis=1), axis=0)
         once = np.stack([corners[name] for name in "xyz"], axis=-1).astype(float)
-        least, most = (1 - 1e-9) * surface(once), (1 + 1e-9) * surface(facets.astype(float))
+        joined = len(mesh.vertices) < len(np.unique(once.reshape(-1, 3), axis=0))
+        slack = 2.0**-22 if joined else 1e-9
+        least, most = (1 - slack) * surface(once), (1 + slack) * surface(facets.astype(float))
+        exact += not joined
         assert least <= surface(mesh.vertices[mesh.triangles]) <= most
         checked += 1
-    assert checked > 100
+    assert checked > 100 and exact > 0.8 * checked
 
 
 def test_robots_load_or_are_refused_for_the_right_reason(data: Path) -> None:

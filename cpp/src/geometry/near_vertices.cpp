@@ -15,7 +15,7 @@ namespace mmgrasp::detail {
 namespace {
 
 constexpr int kBits = 22;       // The rounding is so many binary digits below the largest coordinate's power of two.
-constexpr int kCellBits = 52;   // Of the number of a cell.
+constexpr int kCellBits = 52;   // Numbers of cells have no more.
 constexpr double kEdge = 1e-3;  // Share of the shortest edge.
 
 /// The least power of two above a length, as its exponent.

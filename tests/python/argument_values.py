@@ -308,6 +308,8 @@ OTHERS: dict[str, Any] = {
     "parts": lambda: [PART],
     "trays": lambda: [TRAY],
     "plan_stop_picks.trays": lambda: [0],
+    "_ik_seeds_of_a_grasp.asked": lambda: 8,
+    "_ik_seeds_of_a_grasp.grasps_of_parts": lambda: [3],
     "tasks": lambda: [],
     "task_times": lambda: [],
     "remaining": lambda: [(0, 0)],

@@ -30,10 +30,10 @@ constexpr double kStatesPerSecond = 2000;
 constexpr double kMaxStates = 1e8;
 constexpr double kTimedStep = 0.01;
 
-/// Stages at which candidates fall, in the order in which they are planned.
-enum Stage { kGrasp, kApproach, kClose, kGrip, kLift, kRelease, kTransit, kTransfer, kRetreat, kStages };
-constexpr std::array<const char*, kStages> kStageNames = {"grasp",   "approach", "close",    "grip",   "lift",
-                                                          "release", "transit",  "transfer", "retreat"};
+/// Stages at which candidates fall. Motions are drawn by these numbers: another order plans other ones.
+enum Stage { kGrasp, kApproach, kClose, kLift, kRelease, kTransit, kTransfer, kRetreat, kGrip, kStages };
+constexpr std::array<const char*, kStages> kStageNames = {"grasp",   "approach", "close",   "lift", "release",
+                                                          "transit", "transfer", "retreat", "grip"};
 
 JointPath reversed(const JointPath& path) {
   JointPath back = path;

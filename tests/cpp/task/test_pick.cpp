@@ -62,23 +62,6 @@ TEST(Pick, AnObjectInNoTrayIsGraspedLiftedAndPutDown) {
   for (std::size_t i = 0; i < pick.motions.size(); ++i) EXPECT_EQ(pick.motions[i].attached, i == 2 || i == 3);
 }
 
-// The fingers of this robot leave 2 mm between them when they are closed.
-TEST(Pick, WhatClosedFingersDoNotMeetIsNoPick) {
-  for (const double width : {0.001, 0.0019, 0.0021, 0.004}) {
-    PickProblem problem = pin_on_table();
-    problem.world.remove("pin");
-    problem.world.add("pin", Cylinder{width / 2, 0.06}, test::at(0.88, -0.1, 0.471));
-    problem.grasps = test::grasps_from_above(width);
-    const Pick pick = plan_object_pick(problem, database());
-    if (width > 0.002) {
-      EXPECT_EQ(pick.outcome, Outcome::solved) << width << " " << pick.failed_at;
-    } else {
-      EXPECT_EQ(pick.outcome, Outcome::not_found) << width;
-      EXPECT_EQ(pick.failed_at, "grip") << width;
-    }
-  }
-}
-
 TEST(Pick, WithoutAPlaceTheObjectStaysInTheHand) {
   PickProblem problem = pin_on_table();
   const Pick whole = plan_object_pick(problem, database());

@@ -13,8 +13,6 @@ std::string motion_advice(const std::string& stage) {
   if (stage == "lift") return "lower lift_height or make room above the part";
   if (stage == "release") return "move the bin (place_region) to where the arm can hold a part level over it";
   if (stage == "close") return "leave room for the fingers beside the part";
-  if (stage == "grip")
-    return "the part is thinner than the gap that closed fingers leave: use a hand that closes farther";
   return "raise motion_time_limit, or choose another home configuration";
 }
 

@@ -11,9 +11,6 @@ namespace {
 
 constexpr double kOpeningStep = 0.004;  // [m] between two checks of moving fingers
 constexpr double kJustTouching = 1e-6;  // [m] A part that slides along a wall without a gap is no pick.
-constexpr double kGripPlay = 0.01;      // Fingers may close this far below a grasp's width to meet the part [m],
-constexpr double kGripShare = 0.25;     // or this share of it.
-constexpr int kGripSteps = 20;
 
 }  // namespace
 
@@ -60,27 +57,6 @@ CollisionChecker PickScene::holding(double opening, const Pose& T_hand_object) c
 
 CollisionChecker PickScene::lifting(double opening, const Pose& T_world_hand, const Pose& T_world_object) const {
   return holding(opening, T_world_hand.inverse() * Eigen::Translation3d(0, 0, 2 * kJustTouching) * T_world_object);
-}
-
-int PickScene::fingers_touching(CollisionChecker checker, const Eigen::VectorXd& q) const {
-  const std::vector<std::string>& fingers = problem_.gripper.finger_links;
-  std::set<std::string> touching;
-  for (const Contact& contact : checker.contacts(q)) {
-    if (contact.b == problem_.object && std::count(fingers.begin(), fingers.end(), contact.a) > 0)
-      touching.insert(contact.a);
-  }
-  return static_cast<int>(touching.size());
-}
-
-bool PickScene::fingers_meet(const Eigen::VectorXd& q, double width) const {
-  World alone;
-  alone.add(problem_.object, problem_.world.objects().at(problem_.object));
-  const CollisionChecker checker(arm(width), alone);
-  const double below = std::min(width, std::max(kGripPlay, kGripShare * width));
-  for (int i = 0; i <= kGripSteps; ++i) {
-    if (fingers_touching(checker.with_group(arm(width - below * i / kGripSteps)), q) >= 2) return true;
-  }
-  return false;
 }
 
 bool PickScene::fingers_free(const CollisionChecker& checker, const Eigen::VectorXd& q, double from, double to) const {

@@ -26,15 +26,10 @@ class PickScene {
   /// The fingers can take every opening between two with the arm at q, among what the checker knows.
   bool fingers_free(const CollisionChecker& checker, const Eigen::VectorXd& q, double from, double to) const;
 
-  /// Two finger links meet the object where it stands, the arm at q, at a width or as far below it as fingers may
-  /// close: those that leave a gap when they are closed cannot hold what is thinner.
-  bool fingers_meet(const Eigen::VectorXd& q, double width) const;
-
  private:
   using Checkers = std::map<long, std::unique_ptr<CollisionChecker>>;
   CollisionChecker& kept(Checkers& checkers, const World& world, double opening);
   JointGroup arm(double opening) const;
-  int fingers_touching(CollisionChecker checker, const Eigen::VectorXd& q) const;
 
   const PickProblem& problem_;
   World removed_;

@@ -30,10 +30,10 @@ constexpr double kStatesPerSecond = 2000;
 constexpr double kMaxStates = 1e8;
 constexpr double kTimedStep = 0.01;
 
-/// Stages at which candidates fall. Motions are drawn by these numbers: another order plans other ones.
-enum Stage { kGrasp, kApproach, kClose, kLift, kRelease, kTransit, kTransfer, kRetreat, kGrip, kStages };
-constexpr std::array<const char*, kStages> kStageNames = {"grasp",   "approach", "close",   "lift", "release",
-                                                          "transit", "transfer", "retreat", "grip"};
+/// Stages at which candidates fall, in the order in which they are planned.
+enum Stage { kGrasp, kApproach, kClose, kLift, kRelease, kTransit, kTransfer, kRetreat, kStages };
+constexpr std::array<const char*, kStages> kStageNames = {"grasp",   "approach", "close",    "lift",
+                                                          "release", "transit",  "transfer", "retreat"};
 
 JointPath reversed(const JointPath& path) {
   JointPath back = path;
@@ -145,7 +145,6 @@ class PickPlanner {
     const Pose T_grasp = before.group().fk(q);
     CollisionChecker lifting = scene_.lifting(width, T_grasp, T_world_object_);
     if (!scene_.fingers_free(lifting, q, opening, width)) return fell(kClose);
-    if (!problem_.gripper.suction && !scene_.fingers_meet(q, width)) return fell(kGrip);
     Pose T_lifted = T_grasp;
     T_lifted.translation().z() += problem_.options.lift_height;
     const StraightLineResult lift = plan_straight_line(lifting, q, T_lifted, line_options());

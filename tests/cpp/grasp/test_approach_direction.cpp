@@ -6,6 +6,7 @@
 #include <set>
 #include <variant>
 
+#include "grasp/placed_shape.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/geometry/mesh.hpp"
 #include "mmgrasp/geometry/shape.hpp"
@@ -16,27 +17,15 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-LinkShape shape_at(const Shape& shape, const Pose& pose = Pose::Identity()) {
-  LinkShape result;
-  result.shape = shape;
-  result.T_link_shape = pose;
-  return result;
-}
-
-Hand gripper() {
-  Hand hand;
-  hand.max_opening = 0.10;
-  hand.finger_depth = 0.03;
-  hand.finger_width = 0.02;
-  return hand;
-}
+using test::shape_at;
+using test::wide_gripper;
 
 Eigen::Vector3d approach_of(const Grasp& grasp) {
-  return grasp.T_object_hand.linear() * gripper().approach;
+  return grasp.T_object_hand.linear() * wide_gripper().approach;
 }
 
 Eigen::Vector3d closing_of(const Grasp& grasp) {
-  return grasp.T_object_hand.linear() * gripper().closing;
+  return grasp.T_object_hand.linear() * wide_gripper().closing;
 }
 
 double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
@@ -47,7 +36,7 @@ std::vector<Grasp> grasps_along(const LinkShape& part, const Eigen::Vector3d& di
   GraspSamplerOptions options;
   options.max_grasps = 1000000;
   options.approach_direction = direction;
-  return sample_grasps({part}, gripper(), options).grasps;
+  return sample_grasps({part}, wide_gripper(), options).grasps;
 }
 
 std::vector<Grasp> at_contacts(std::vector<Grasp> grasps) {
@@ -85,7 +74,7 @@ TEST(ApproachDirection, OfABoxKeepsThoseOfAllThatApproachSo) {
   GraspSamplerOptions options;
   options.max_grasps = 1000000;
   std::size_t expected = 0;
-  for (const Grasp& grasp : sample_grasps({box}, gripper(), options).grasps) {
+  for (const Grasp& grasp : sample_grasps({box}, wide_gripper(), options).grasps) {
     if (angle_between(approach_of(grasp), down) > 1e-6) continue;
     ++expected;
     EXPECT_TRUE(is_among(along, grasp));
@@ -143,10 +132,10 @@ TEST(ApproachDirection, FindsManyGraspsOfARodMeshWhereFewOfAllAreStraight) {
   const Eigen::Vector3d down(std::cos(0.05), std::sin(0.05), 0);  // 2.9 degrees from a facet's edge
   GraspSamplerOptions options;
   const auto is_straight = [&](const Grasp& grasp) { return angle_between(approach_of(grasp), down) < 1e-3; };
-  const std::vector<Grasp> all = sample_grasps({rod}, gripper(), options).grasps;
+  const std::vector<Grasp> all = sample_grasps({rod}, wide_gripper(), options).grasps;
   EXPECT_LT(std::count_if(all.begin(), all.end(), is_straight), 8);
   options.approach_direction = down;
-  const std::vector<Grasp> along = sample_grasps({rod}, gripper(), options).grasps;
+  const std::vector<Grasp> along = sample_grasps({rod}, wide_gripper(), options).grasps;
   EXPECT_GE(along.size(), 100u);
   EXPECT_LE(along.size(), 200u);  // max_grasps
   for (const Grasp& grasp : along) {
@@ -155,7 +144,7 @@ TEST(ApproachDirection, FindsManyGraspsOfARodMeshWhereFewOfAllAreStraight) {
     EXPECT_LE(grasp.opening, 2 * radius + 1e-9);
     EXPECT_GE(grasp.opening, 2 * radius * std::cos(kPi / sides) - 1e-9);
   }
-  const std::vector<Grasp> again = sample_grasps({rod}, gripper(), options).grasps;
+  const std::vector<Grasp> again = sample_grasps({rod}, wide_gripper(), options).grasps;
   ASSERT_EQ(again.size(), along.size());
   for (std::size_t i = 0; i < along.size(); ++i)
     EXPECT_EQ(again[i].T_object_hand.matrix(), along[i].T_object_hand.matrix());
@@ -167,7 +156,7 @@ TEST(ApproachDirection, ABoxThatLeansIsHeldAsItsMesh) {
   const Eigen::Vector3d down(0, -std::sin(tilt), -std::cos(tilt));
   // The pads are longer than the box is high as it leans, so that they meet its outermost edges.
   const double across = size.y() * std::cos(tilt) + size.z() * std::sin(tilt);
-  ASSERT_LT(size.z() * std::cos(tilt) + size.y() * std::sin(tilt), gripper().finger_depth);
+  ASSERT_LT(size.z() * std::cos(tilt) + size.y() * std::sin(tilt), wide_gripper().finger_depth);
   double widest = 0;
   int along_x = 0;
   for (const Grasp& grasp : grasps_along(shape_at(Box{size}), down)) {

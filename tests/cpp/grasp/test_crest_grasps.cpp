@@ -20,18 +20,13 @@ struct Ring {
   double z, radius;
 };
 
-/// The solid that an outline makes about z, with an end disc at its first and last ring.
-std::shared_ptr<const TriangleMesh> turned(const std::vector<Ring>& outline) {
-  std::vector<Eigen::Vector3d> vertices;
+/// The solid that rings of kSides vertices make about z, one after the other, with a disc at either end.
+std::shared_ptr<const TriangleMesh> closed_by_discs(std::vector<Eigen::Vector3d> vertices, int rings) {
   std::vector<std::array<int, 3>> triangles;
-  for (const Ring& ring : outline)
-    for (int i = 0; i < kSides; ++i) {
-      const double angle = 2 * kPi * i / kSides;
-      vertices.emplace_back(ring.radius * std::cos(angle), ring.radius * std::sin(angle), ring.z);
-    }
-  const int rings = static_cast<int>(outline.size()), bottom = rings * kSides, top = bottom + 1;
-  vertices.emplace_back(0, 0, outline.front().z);
-  vertices.emplace_back(0, 0, outline.back().z);
+  const int bottom = rings * kSides, top = bottom + 1;
+  const double low = vertices.front().z(), high = vertices.back().z();
+  vertices.emplace_back(0, 0, low);
+  vertices.emplace_back(0, 0, high);
   for (int i = 0; i < kSides; ++i) {
     const int next = (i + 1) % kSides;
     for (int k = 0; k + 1 < rings; ++k) {
@@ -45,12 +40,22 @@ std::shared_ptr<const TriangleMesh> turned(const std::vector<Ring>& outline) {
   return make_mesh(vertices, triangles);
 }
 
+/// The solid that an outline makes about z.
+std::shared_ptr<const TriangleMesh> turned(const std::vector<Ring>& outline) {
+  std::vector<Eigen::Vector3d> vertices;
+  for (const Ring& ring : outline)
+    for (int i = 0; i < kSides; ++i) {
+      const double angle = 2 * kPi * i / kSides;
+      vertices.emplace_back(ring.radius * std::cos(angle), ring.radius * std::sin(angle), ring.z);
+    }
+  return closed_by_discs(vertices, static_cast<int>(outline.size()));
+}
+
 /// A rod about z with a screw thread of triangular crests, meshed in rings around its axis.
 std::shared_ptr<const TriangleMesh> threaded(double radius, double depth, double length, double pitch) {
   constexpr int kPerTurn = 8;
   const int rings = static_cast<int>(std::lround(length / pitch * kPerTurn)) + 1;
   std::vector<Eigen::Vector3d> vertices;
-  std::vector<std::array<int, 3>> triangles;
   for (int k = 0; k < rings; ++k)
     for (int i = 0; i < kSides; ++i) {
       const double z = length * k / (rings - 1) - length / 2, turns = static_cast<double>(i) / kSides;
@@ -58,20 +63,7 @@ std::shared_ptr<const TriangleMesh> threaded(double radius, double depth, double
       const double r = radius - depth * below;
       vertices.emplace_back(r * std::cos(2 * kPi * turns), r * std::sin(2 * kPi * turns), z);
     }
-  const int bottom = rings * kSides, top = bottom + 1;
-  vertices.emplace_back(0, 0, -length / 2);
-  vertices.emplace_back(0, 0, length / 2);
-  for (int i = 0; i < kSides; ++i) {
-    const int next = (i + 1) % kSides;
-    for (int k = 0; k + 1 < rings; ++k) {
-      const int a = k * kSides + i, b = k * kSides + next;
-      triangles.push_back({a, b, b + kSides});
-      triangles.push_back({a, b + kSides, a + kSides});
-    }
-    triangles.push_back({bottom, next, i});
-    triangles.push_back({top, (rings - 1) * kSides + i, (rings - 1) * kSides + next});
-  }
-  return make_mesh(vertices, triangles);
+  return closed_by_discs(vertices, rings);
 }
 
 /// V-shaped grooves of 60 degrees from end to end, crests at the radius.

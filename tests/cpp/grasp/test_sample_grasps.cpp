@@ -8,6 +8,7 @@
 #include <set>
 #include <variant>
 
+#include "grasp/placed_shape.hpp"
 #include "mmgrasp/core/error.hpp"
 
 namespace mmgrasp {
@@ -15,20 +16,8 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-LinkShape shape_at(const Shape& shape, const Pose& pose = Pose::Identity()) {
-  LinkShape result;
-  result.shape = shape;
-  result.T_link_shape = pose;
-  return result;
-}
-
-Hand wide_gripper() {
-  Hand gripper;
-  gripper.max_opening = 0.10;
-  gripper.finger_depth = 0.03;
-  gripper.finger_width = 0.02;
-  return gripper;
-}
+using test::shape_at;
+using test::wide_gripper;
 
 GraspSamplerOptions all_kept() {
   GraspSamplerOptions options;

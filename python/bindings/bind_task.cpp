@@ -4,6 +4,7 @@
 #include "ids.hpp"
 #include "mmgrasp/task/base_route.hpp"
 #include "mmgrasp/task/base_sequence.hpp"
+#include "mmgrasp/task/fingers_meet.hpp"
 #include "mmgrasp/task/part_supply.hpp"
 #include "mmgrasp/task/pick.hpp"
 #include "mmgrasp/task/plan_file.hpp"
@@ -282,6 +283,16 @@ void bind_picks(py::module_& m) {
       "(tray, part) still in place. Returns how it ended and the picks in order; without a solution those that "
       "failed.\n"
       "InvalidInput when the robot at home is not free there.");
+  m.def(
+      "fingers_meet",
+      [](const Robot& robot, const Hand& hand, const std::vector<LinkShape>& part, const std::vector<Grasp>& grasps) {
+        return interruptible([&] { return fingers_meet(robot, hand, part, grasps); });
+      },
+      py::arg("robot"), py::arg("hand"), py::arg("part"), py::arg("grasps"),
+      "Of each grasp of a part, whether two of the hand's finger links meet the part at once, closing from the grasp's\n"
+      "opening by at most 10 mm or a quarter of it: a plan's own check asks for that. Fingers that leave a gap when they\n"
+      "are closed cannot hold what is thinner. Cups have no fingers to close: all True. InvalidInput where the robot\n"
+      "lacks a link or joint of the hand.");
   m.def(
       "plan_object_pick",
       [](const JointGroup& arm, const Hand& gripper, const World& world, const std::string& object,

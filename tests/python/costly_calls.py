@@ -58,6 +58,7 @@ from costly_work import (
     long_chain,
     long_operation,
     many_bodies,
+    many_grasps_of_nothing,
     maximal,
     object_regions,
     octree_file,
@@ -226,6 +227,7 @@ COSTLY: dict[str, Callable[[], CALL]] = {
     "track_base": tracked,
     "verify.check_path": checked_path,
     "verify.overlapping_bodies": many_bodies,
+    "fingers_meet": many_grasps_of_nothing,
     **{name: of(ao.drive_by, call) for name, call in DRIVEN.items()},
 }
 

@@ -234,6 +234,12 @@ def sampled_by_cups() -> CALL:
     return lambda: mg.grasping.sample_suction_grasps(part, hand, turns=10, surface_samples=100_000)
 
 
+def many_grasps_of_nothing() -> CALL:
+    hand = ao.gripper()
+    grasps = [mg.Grasp(mg.pose([9, 0, 0]), 0.02)] * 20_000
+    return lambda: mg.grasping.fingers_meet(ao.ROBOT, hand, [BOX], grasps)
+
+
 def many_bodies() -> CALL:
     bodies = [
         _core.verify.CheckedBody(str(i), [BOX], mg.pose([0.2 * (i % 200), 0.2 * (i // 200), 0])) for i in range(40_000)

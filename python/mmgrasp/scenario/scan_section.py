@@ -13,12 +13,13 @@ from typing import Any
 import numpy as np
 
 from .. import _core
-from .._core import Box, Grasp, Hand, InvalidInput, IoError, LinkShape, Outcome, Part, ProbabilisticSdf
+from .._core import Box, Grasp, Hand, InvalidInput, IoError, LinkShape, Outcome, Part, ProbabilisticSdf, Robot
 from .._files import printable, sha256_of
 from .._progress import Progress, is_callers
 from ..documents.reading import Node
 from ..scan.map_folder import MAP, TrayObject, load_map, objects_in_tray
 from ..scan.rendered import Tour, rendered_map
+from .held_grasps import CLOSING_PLAY, held
 from .map_bodies import Footprint, cell_boxes, cells_around, edge_for, inside_boxes, large_pieces, object_boxes
 
 SIGMAS = 2.0
@@ -69,9 +70,17 @@ class _LoadedMap:
 class ScanReader:
     """Reads the key `scan` of one tray after another; `rest` is what the maps hold beside their parts."""
 
-    def __init__(self, gripper: Hand, scene: list[LinkShape], find: Callable[[Node], Path], progress: Progress) -> None:
+    def __init__(
+        self,
+        robot: Robot,
+        gripper: Hand,
+        scene: list[LinkShape],
+        find: Callable[[Node], Path],
+        progress: Progress,
+    ) -> None:
         """`scene`: the typed obstacles in the world, which rendered frames show too; `find`: file that a node names."""
-        self._gripper, self._scene, self._find, self._progress = gripper, scene, find, progress
+        self._robot, self._gripper, self._scene = robot, gripper, scene
+        self._find, self._progress = find, progress
         self._maps: dict[Path, _LoadedMap] = {}
 
     def read(
@@ -211,9 +220,12 @@ class ScanReader:
             between = width_between(shapes, T, self._gripper)
             if between is not None and abs(between - grasp.opening) <= _WIDTH_PLAY:
                 grasps.append(Grasp(T, grasp.opening, quality=grasp.quality))
-        wide = found.counts["too_wide"]
+        wide, rated = found.counts["too_wide"], len(grasps)
+        grasps = held(self._robot, self._gripper, shapes, grasps)
         if not found.grasps:
             reasons[name] = found.summary()
+        elif rated and not grasps:
+            reasons[name] = f"in none of {rated} grasps do two finger links meet it, closing as far as they may ({CLOSING_PLAY})"
         elif not grasps:
             reasons[name] = f"in all {len(found.grasps)} grasps the pads would meet an edge"
         return Part(name, shapes, T_world_part, grasps, target=False, grasps_too_wide=wide)

@@ -181,8 +181,8 @@ def _read_scenario(
     if setup.robot.base == "fixed":
         root["robot"].fail("a part-supply round needs base: diff_drive or omni")
     _check_metres(root, obstacles, setup.robot.base_limits["workspace"])
-    types = read_part_types(root["part_types"], setup.gripper, progress) if "part_types" in root else {}
-    scans = ScanReader(setup.gripper, _in_world(obstacles), find_file, progress)
+    types = read_part_types(root["part_types"], setup.robot, setup.gripper, progress) if "part_types" in root else {}
+    scans = ScanReader(setup.robot, setup.gripper, _in_world(obstacles), find_file, progress)
     trays = _read_trays(root, types, setup, scans)
     _warn_of_a_small_bin(trays, types, setup.place_region.size)
     check_grid_size(root, trays, {key: value for key, (value, _) in _core._supply_option_table().items()} | options)

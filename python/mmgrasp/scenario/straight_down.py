@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 
 from .. import _core
-from .._core import Grasp, Hand, LinkShape
+from .._core import Grasp, Hand, LinkShape, Robot
 from .._progress import Progress
+from .held_grasps import held
 
 MIN_STRAIGHT = 8  # grasps straight down; where there are fewer, more are drawn
 MOST_ADDED = 24  # grasps at most that join those of the type
@@ -18,6 +19,7 @@ FLUSH = 1e-6  # tips of pads reach no farther beyond the part's far face [m]
 
 def with_grasps_down(
     shapes: list[LinkShape],
+    robot: Robot,
     gripper: Hand,
     grasps: list[Grasp],
     down: np.ndarray,
@@ -44,6 +46,7 @@ def with_grasps_down(
     asked = {**options, "approach_direction": down, "max_grasps": MOST_DRAWN}
     drawn, _ = _core._sample_grasps(shapes, gripper, progress=progress, **asked)
     new = [grasp for grasp in drawn if is_usable(grasp) and not _is_among(straight, grasp)]
+    new = held(robot, gripper, shapes, new)
     most = options.get("max_grasps", _core._grasp_option_table()["max_grasps"][0])
     new = new[: min(MOST_ADDED, most - len(straight))]
     if not new:

@@ -8,12 +8,13 @@ from typing import Any
 import numpy as np
 
 from .. import _core
-from .._core import Box, Grasp, Hand, LinkShape, Part, Tray
+from .._core import Box, Grasp, Hand, LinkShape, Part, Robot, Tray
 from .._core import verify as checks
 from .._files import printable
 from .._progress import Progress
 from ..documents.reading import Node, near_miss
 from .cup_grasps import read_cup_grasps
+from .held_grasps import CLOSING_PLAY, held
 from .part_type import PartType, read_grasp_options
 from .robot_section import find_file
 from .scan_section import ScanReader, TrayScan, moved
@@ -51,8 +52,8 @@ class TraySetup:
         return [name for name, own in self.kinds.items() if own == kind]
 
 
-def read_part_types(node: Node, gripper: Hand, progress: Progress = None) -> dict[str, PartType]:
-    """The section `part_types`, which takes long where parts are fine meshes; raises InvalidInput for grasps that hold nothing."""
+def read_part_types(node: Node, robot: Robot, gripper: Hand, progress: Progress = None) -> dict[str, PartType]:
+    """The section `part_types` for the gripper of a robot, which takes long where parts are fine meshes; raises InvalidInput for grasps that hold nothing."""
     types: dict[str, PartType] = {}
     entries = list(node.items())
     for name, entry in entries:
@@ -70,13 +71,36 @@ def read_part_types(node: Node, gripper: Hand, progress: Progress = None) -> dic
             grasps, too_wide = _listed_grasps(entry["grasps"], gripper)
             _check_they_hold(entry["grasps"], name, shapes, grasps, gripper)
             _check_openings(entry["grasps"], name, shapes, gripper)
+            _check_fingers_meet(entry["grasps"], name, shapes, robot, gripper)
             types[name] = PartType(shapes, grasps, too_wide, entry, mass)
         else:
-            grasps, too_wide = _core._sample_grasps(shapes, gripper, progress=tell, **options)
-            types[name] = PartType(
-                shapes, grasps, too_wide, entry, mass, gripper=gripper, grasp_options=options, progress=tell
-            )
+            types[name] = _sampled_type(shapes, entry, mass, robot, gripper, options, tell)
     return types
+
+
+def _sampled_type(
+    shapes: list[LinkShape],
+    entry: Node,
+    mass: float,
+    robot: Robot,
+    gripper: Hand,
+    options: dict[str, Any],
+    progress: Progress,
+) -> PartType:
+    drawn, too_wide = _core._sample_grasps(shapes, gripper, progress=progress, **options)
+    grasps = held(robot, gripper, shapes, drawn)
+    return PartType(
+        shapes,
+        grasps,
+        too_wide,
+        entry,
+        mass,
+        gripper=gripper,
+        robot=robot,
+        not_met=len(drawn) - len(grasps),
+        grasp_options=options,
+        progress=progress,
+    )
 
 
 def _telling_of(name: str, fraction: float, progress: Progress) -> Progress:
@@ -145,6 +169,19 @@ def _check_openings(node: Node, name: str, shapes: list[LinkShape], gripper: Han
         unlike = checks.pads_unlike_grasp(gripper, shapes, checks.CheckedGrasp(entry["pose"].pose(), opening))
         if unlike:
             entry["opening"].fail(f"does not hold part type {name}: {unlike}")
+
+
+def _check_fingers_meet(node: Node, name: str, shapes: list[LinkShape], robot: Robot, gripper: Hand) -> None:
+    """Refuses grasps at which the closing fingers do not meet the part, by the rule of `verify`."""
+    listed = [(entry, Grasp(entry["pose"].pose(), entry["opening"].number(least=0))) for entry in node.elements()]
+    fitting = [(entry, grasp) for entry, grasp in listed if grasp.opening <= gripper.max_opening]
+    meet = _core.fingers_meet(robot, gripper, shapes, [grasp for _, grasp in fitting])
+    for (entry, _), meets in zip(fitting, meet, strict=True):
+        if not meets:
+            entry.fail(
+                f"does not hold part type {name}: fewer than two finger links of the gripper meet it, closing from its "
+                f"opening as far as they may ({CLOSING_PLAY})"
+            )
 
 
 def read_tray(node: Node, types: dict[str, PartType], gripper: Hand, scans: ScanReader) -> TraySetup:
@@ -385,6 +422,11 @@ def _check_graspable(name: str, kind: PartType, grasps: list[Grasp], gripper: Ha
     if kind.why_none:
         kind.node.fail(f"part {name} has no grasp: {kind.why_none}")
     _refuse_at_option(name, kind, gripper)
+    if kind.not_met:
+        kind.node.fail(
+            f"part {name} has no grasp: in none of {kind.not_met} do two finger links of the gripper meet it, closing from its "
+            f"width as far as they may ({CLOSING_PLAY}); is it thinner than the gap that they leave when they are closed?"
+        )
     if kind.too_wide:
         kind.node.fail(
             f"part {name} is larger than the gripper: none of {kind.too_wide} grasps fits its opening of "
@@ -397,7 +439,8 @@ def _refuse_at_option(name: str, kind: PartType, gripper: Hand) -> None:
     """Fails at the first option of the sampler without which the part would have grasps, or at all of them together."""
 
     def count_with(options: dict[str, Any]) -> int:
-        return len(_core._sample_grasps(kind.shapes, gripper, progress=kind.progress, **options)[0])
+        drawn, _ = _core._sample_grasps(kind.shapes, gripper, progress=kind.progress, **options)
+        return len(drawn if kind.robot is None else held(kind.robot, gripper, kind.shapes, drawn))
 
     for key in kind.grasp_options:
         count = count_with({other: value for other, value in kind.grasp_options.items() if other != key})

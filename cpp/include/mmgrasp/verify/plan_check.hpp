@@ -114,6 +114,10 @@ struct CheckedPads {
   double max_opening, finger_depth, finger_width, clearance;
 };
 
+/// Down to which opening fingers may close to meet a part at a grasp of this width [m]: 10 mm below it, or a quarter of
+/// it, for collision shapes may stand back from the pads that the width is meant for.
+MMGRASP_EXPORT double narrowest_grip(double width);
+
 /// What is wrong with the seal of the cups at the grasp, which face along `approach` (unit, tool frame): the rims of
 /// all must have the part's surface before them, no farther than max_gap, and what they enclose must be covered by it,
 /// no deeper than their radius; empty: they seal. By FCL, with needles of those lengths.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mmgrasp/verify/plan_check.hpp"
+
 namespace mmgrasp::verify::detail {
 namespace {
 
@@ -36,7 +38,7 @@ void HandCheck::check_fingers(const Eigen::VectorXd& arm, double from, double to
 
 void HandCheck::check_grip(const Eigen::VectorXd& arm, double width, const std::string& where) {
   constexpr int kSteps = 20;
-  const double below = std::min(width, std::max(kGripPlay, kGripShare * width));
+  const double below = width - narrowest_grip(width);
   int most = 0;
   for (int i = 0; i <= kSteps && most < 2; ++i) {
     most = std::max(most, judge_.fingers_touching_attached(arm, width - below * i / kSteps));
@@ -48,3 +50,11 @@ void HandCheck::check_grip(const Eigen::VectorXd& arm, double width, const std::
 }
 
 }  // namespace mmgrasp::verify::detail
+
+namespace mmgrasp::verify {
+
+double narrowest_grip(double width) {
+  return std::max(0.0, width - std::max(detail::kGripPlay, detail::kGripShare * width));
+}
+
+}  // namespace mmgrasp::verify

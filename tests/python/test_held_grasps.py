@@ -1,0 +1,73 @@
+"""Scenarios whose parts the closing fingers do not meet are refused where they are wrong; what is left verify accepts."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import mmgrasp as mg
+
+STOREROOM = Path(mg.__file__).parent / "assets" / "scenarios" / "storeroom.yaml"
+
+
+def with_brackets(folder: Path, body: str) -> Path:
+    """The storeroom with tray A alone, whose four targets have this body."""
+    text = STOREROOM.read_text().replace("bracket: {box: [0.03, 0.05, 0.07]}", f"bracket: {{{body}}}")
+    head, rest = text.split("  - name: B\n")
+    path = folder / "scenario.yaml"
+    path.write_text(head + "\noptions:" + rest.split("\noptions:")[1])
+    return path
+
+
+def parts_of(path: Path) -> list[mg.base.Part]:
+    return mg.load_scenario(path).problem().trays[0].parts
+
+
+def gap_of_closed_fingers() -> float:
+    """Between the storeroom's two finger links, closed [m]."""
+    scenario = mg.load_scenario(STOREROOM)
+    problem = scenario.problem()
+    robot, hand = problem.robot, problem.gripper
+    bare = robot.with_disabled_pairs([pair for pair in robot.disabled_pairs if set(pair[:2]) != set(hand.finger_links)])
+    arm = bare.group(base_link=robot.links[0], tip=hand.tool_link).with_reference(hand.joint_values(0.0))
+    near = mg.CollisionChecker(bare, mg.World(), arm).distances((arm.sample_lower + arm.sample_upper) / 2, 0.05)
+    return min(float(d) for d in near if {d.a, d.b} == set(hand.finger_links))
+
+
+def test_parts_thinner_than_the_gap_of_closed_fingers_are_refused_at_their_line(tmp_path: Path) -> None:
+    gap = gap_of_closed_fingers()
+    assert 2e-4 < gap < 5e-3
+    thin = with_brackets(tmp_path, f"cylinder: {{radius: {0.475 * gap:.6f}, length: 0.2}}")
+    with pytest.raises(mg.InvalidInput, match=r"scenario.yaml:63: part_types.bracket.*has no grasp.*two finger links.*thinner than the gap"):
+        mg.load_scenario(thin)
+    wide = parts_of(with_brackets(tmp_path, f"box: [{1.05 * gap:.6f}, 0.05, 0.07]"))[0]
+    openings = {round(grasp.opening, 6) for grasp in wide.grasps}
+    assert round(1.05 * gap, 6) in openings
+
+
+def test_grasps_across_the_thin_side_are_left_out_and_others_stay(tmp_path: Path) -> None:
+    grasps = parts_of(with_brackets(tmp_path, "box: [0.0005, 0.05, 0.07]"))[0].grasps
+    assert grasps
+    assert min(grasp.opening for grasp in grasps) > 0.04
+
+
+def test_listed_grasps_are_refused_at_their_entry(tmp_path: Path) -> None:
+    down = mg.pose([0, 0, 0.02], rpy=[0, np.pi / 2, 0])
+    xyz, rpy = [0.0, 0.0, 0.02], [0.0, 1.5707963, 0.0]
+    assert np.allclose(mg.pose(xyz, rpy=rpy), down, atol=1e-6)
+    listed = f"grasps: [{{pose: {{xyz: {xyz}, rpy: {rpy}}}, opening: 0.05}}, {{pose: {{xyz: {xyz}, rpy: [0, 1.5707963, 1.5707963]}}, opening: 0.0005}}]"
+    with pytest.raises(mg.InvalidInput, match=r"grasps\[1\].*does not hold part type bracket.*finger links"):
+        mg.load_scenario(with_brackets(tmp_path, f"box: [0.0005, 0.05, 0.07], {listed}"))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("thickness", [0.0011, 0.002, 0.004])
+def test_thin_parts_that_are_planned_are_accepted_by_verify(tmp_path: Path, thickness: float) -> None:
+    scenario = with_brackets(tmp_path, f"cylinder: {{radius: {thickness / 2}, length: 0.07}}")
+    plan = mg.plan_part_supply(scenario)
+    assert plan.outcome == mg.Outcome.solved
+    plan.save(tmp_path / "plan.json")
+    verdict = mg.verify_plan(tmp_path / "plan.json", scenario=scenario)
+    assert verdict.ok, verdict.faults

@@ -46,6 +46,7 @@ from costly_work import (
     evaluated,
     exact_stops,
     far_route,
+    fine_bodies,
     fine_occupancy,
     fine_sdf,
     folder,
@@ -227,6 +228,7 @@ COSTLY: dict[str, Callable[[], CALL]] = {
     "track_base": tracked,
     "verify.check_path": checked_path,
     "verify.overlapping_bodies": many_bodies,
+    "verify.overlapping_bodies, a fine mesh": fine_bodies,
     "fingers_meet": many_grasps_of_nothing,
     **{name: of(ao.drive_by, call) for name, call in DRIVEN.items()},
 }

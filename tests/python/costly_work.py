@@ -247,6 +247,11 @@ def many_bodies() -> CALL:
     return lambda: _core.verify.overlapping_bodies(bodies)
 
 
+def fine_bodies() -> CALL:
+    bodies = [_core.verify.CheckedBody(name, [mg.LinkShape(slab(700))], np.eye(4)) for name in "ab"]
+    return lambda: _core.verify.overlapping_bodies(bodies)
+
+
 def checked_path() -> CALL:
     path = np.array([Q, -Q])
     return lambda: _core.verify.check_path(ao.ROBOT, ["i", "j", "k"], path, [], joint_step=1e-7)

@@ -199,7 +199,7 @@ void Structure::body(const CheckedBody& body, const std::string& where, std::set
   need(is_pose(body.T_world_body), where + " '" + body.name + "'", "its pose is not a finite rigid transform");
   need(!body.shapes.empty(), where + " '" + body.name + "'", "has no shape");
   try {
-    make_solids(body.shapes);
+    check_shapes(body.shapes);
   } catch (const Error& error) {
     need(false, where + " '" + body.name + "'", error.what());
   }

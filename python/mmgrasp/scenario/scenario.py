@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import os
 import re
 from dataclasses import dataclass, field
@@ -197,7 +198,7 @@ def _read_scenario(
     rules = read_contact_rules(root, setup.robot, names, [p.name for t in trays for p in t.tray.parts])
     if setup.gripper.suction is not None and any([*rules.padding.get("by_name", {}).values(), *_everywhere(rules)]):
         root["padding"].fail("must be left out: a hand of suction cups comes within 0.2 mm of its parts")
-    _check_apart(root["trays"], trays, obstacles, floor)
+    _check_apart(root["trays"], trays, obstacles, floor, progress)
     if seed is not None:
         options["seed"] = seed
     if threads is not None:
@@ -383,24 +384,27 @@ def _check_names(root: Node, obstacles: list[Obstacle], trays: list[TraySetup]) 
         seen.add(name)
 
 
-def _check_apart(node: Node, trays: list[TraySetup], obstacles: list[Obstacle], floor: float | None) -> None:
+def _check_apart(
+    node: Node, trays: list[TraySetup], obstacles: list[Obstacle], floor: float | None, progress: Progress
+) -> None:
     """No two trays in one place, no two parts, no part in an obstacle or a wall of a tray, neither in the ground."""
     ground = [] if floor is None else [Obstacle(FLOOR, np.eye(4), [LinkShape(Plane([0, 0, 1], floor))])]
     walls = [checks.CheckedBody(f"tray {t.tray.name}", t.walls, t.tray.T_world_tray) for t in trays]
-    for i, j in checks.overlapping_bodies(walls):
+    overlapping = functools.partial(checks.overlapping_bodies, progress=progress)
+    for i, j in overlapping(walls):
         node.elements()[j].fail(f"overlaps tray {trays[i].tray.name}")
-    for _, j in checks.overlapping_bodies(_checked(ground) + walls) if ground else []:
+    for _, j in overlapping(_checked(ground) + walls) if ground else []:
         node.elements()[j - 1].fail(
             f"tray {trays[j - 1].tray.name} reaches under the floor, z = {floor:g} m (the key floor)"
         )
     owners = [k for k, t in enumerate(trays) for _ in t.tray.parts]
     parts = [part for t in trays for part in t.tray.parts]
-    for i, j in checks.overlapping_bodies([checks.CheckedBody(p.name, p.shapes, p.T_world_part) for p in parts]):
+    for i, j in overlapping([checks.CheckedBody(p.name, p.shapes, p.T_world_part) for p in parts]):
         node.elements()[owners[j]]["parts"].fail(f"part {parts[j].name} overlaps part {parts[i].name}")
     room = _checked(obstacles + ground)
     typed = [(k, part) for k, t in enumerate(trays) if t.scan is None for part in t.tray.parts]
     bodies = [checks.CheckedBody(part.name, part.shapes, part.T_world_part) for _, part in typed]
-    for i, j in checks.overlapping_bodies(room + bodies) if bodies else []:
+    for i, j in overlapping(room + bodies) if bodies else []:
         if i < len(room) <= j:
             k, part = typed[j - len(room)]
             node.elements()[k]["parts"].fail(

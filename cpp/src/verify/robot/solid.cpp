@@ -1,6 +1,7 @@
 #include "verify/robot/solid.hpp"
 
 #include <fcl/geometry/bvh/BVH_model.h>
+#include <fcl/geometry/bvh/detail/BV_splitter.h>
 #include <fcl/geometry/shape/box.h>
 #include <fcl/geometry/shape/capsule.h>
 #include <fcl/geometry/shape/cylinder.h>
@@ -36,8 +37,19 @@ Bounds centred(const Eigen::Vector3d& size) {
   return {-0.5 * size, 0.5 * size};
 }
 
+/// FCL's own way to split, which can be stopped: the tree of a million triangles takes seconds.
+class StoppableSplitter : public fcl::detail::BVSplitter<fcl::OBBRSSd> {
+ public:
+  StoppableSplitter() : BVSplitter(fcl::detail::SPLIT_METHOD_MEAN) {}
+  void computeRule(const fcl::OBBRSSd& bounds, unsigned int* primitives, int count) override {
+    if (count > 1000) mmgrasp::detail::throw_if_interrupted();
+    BVSplitter::computeRule(bounds, primitives, count);
+  }
+};
+
 std::shared_ptr<BvhModel> bvh(const TriangleMesh& mesh) {
   auto model = std::make_shared<BvhModel>();
+  model->bv_splitter = std::make_shared<StoppableSplitter>();
   model->beginModel(static_cast<int>(mesh.triangles.size()), static_cast<int>(mesh.vertices.size()));
   std::vector<fcl::Vector3d> vertices(mesh.vertices.begin(), mesh.vertices.end());
   std::vector<fcl::Triangle> triangles;
@@ -183,11 +195,15 @@ Solid grown_plane(const Solid& solid, double by) {
 
 }  // namespace
 
+void check_shapes(const std::vector<LinkShape>& shapes) {
+  for (const LinkShape& item : shapes) check_item(item);
+}
+
 std::vector<Solid> make_solids(const std::vector<LinkShape>& shapes) {
+  check_shapes(shapes);
   std::vector<Solid> solids;
   for (const LinkShape& item : shapes) {
     mmgrasp::detail::throw_if_interrupted();
-    check_item(item);
     add_solids(item, solids);
   }
   return solids;

@@ -26,6 +26,9 @@ struct Solid {
   std::vector<Eigen::Vector3d> probes;       ///< One point on or in each connected piece, shape frame.
 };
 
+/// Throws InvalidInput for an unusable shape.
+void check_shapes(const std::vector<LinkShape>& shapes);
+
 /// FCL geometry for a shape (voxels give one box each). Throws InvalidInput for an unusable shape.
 MMGRASP_EXPORT std::vector<Solid> make_solids(const std::vector<LinkShape>& shapes);
 

@@ -13,10 +13,12 @@ from typing import Any
 import jsonschema
 import numpy as np
 import pytest
+from rich.console import Console
 
 import mmgrasp as mg
 from conftest import ASSETS
 from mmgrasp.cli import main
+from mmgrasp.cli.console import Reporter
 from mmgrasp.part_supply.plan_file import plan_schema, read_plan
 
 FETCH = ASSETS / "robots" / "fetchlike"
@@ -192,3 +194,29 @@ def test_one_file_is_no_picture_and_film(out: Path, tmp_path: Path, capfd: pytes
 def test_view_draws_a_picture(out: Path, tmp_path: Path) -> None:
     assert main(["view", str(out / "plan.json"), "--png", str(tmp_path / "plan.png")]) == 0
     assert (tmp_path / "plan.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_long_stages_say_how_far_they_are_where_no_bars_are_shown(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    clock = [100.0]
+    monkeypatch.setattr("mmgrasp.cli.console.time.monotonic", lambda: clock[0])
+    with Reporter(Console()) as report:
+        for now, stage, fraction in (
+            (100.0, "route", 0.0),
+            (101.0, "route", 0.1),
+            (109.9, "route", 0.2),
+            (110.0, "route", 0.25),
+            (112.0, "picks", 0.0),
+            (121.9, "picks", 0.4),
+            (122.0, "", 0.4),
+            (123.5, "picks", 0.5),
+        ):
+            clock[0] = now
+            report(stage, fraction)
+    assert capsys.readouterr().err.splitlines() == [
+        "[   0.0 s] route",
+        "[  10.0 s] route, 25 %",
+        "[  12.0 s] picks",
+        "[  23.5 s] picks, 50 %",
+    ]

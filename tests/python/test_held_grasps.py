@@ -40,7 +40,10 @@ def test_parts_thinner_than_the_gap_of_closed_fingers_are_refused_at_their_line(
     gap = gap_of_closed_fingers()
     assert 2e-4 < gap < 5e-3
     thin = with_brackets(tmp_path, f"cylinder: {{radius: {0.475 * gap:.6f}, length: 0.2}}")
-    with pytest.raises(mg.InvalidInput, match=r"scenario.yaml:63: part_types.bracket.*has no grasp.*two finger links.*thinner than the gap"):
+    with pytest.raises(
+        mg.InvalidInput,
+        match=r"scenario.yaml:63: part_types.bracket.*has no grasp.*two finger links.*thinner than the gap",
+    ):
         mg.load_scenario(thin)
     wide = parts_of(with_brackets(tmp_path, f"box: [{1.05 * gap:.6f}, 0.05, 0.07]"))[0]
     openings = {round(grasp.opening, 6) for grasp in wide.grasps}

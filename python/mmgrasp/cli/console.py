@@ -56,14 +56,17 @@ class CommandConsole(Console):
         raise BrokenPipeError
 
 
+_QUIET = 10.0  # [s] after which a stage says again how far it is, where no bars are shown
+
+
 class Reporter:
-    """Called with (stage, fraction); shows each stage once, in the order they begin."""
+    """Called with (stage, fraction); shows each stage in the order they begin: as a bar, or as lines where standard error is no terminal."""
 
     def __init__(self, console: Console) -> None:
         self._bars: Progress | None = None
         self._tasks: dict[str, TaskID] = {}
-        self._seen: dict[str, float] = {}
-        self._begun = time.monotonic()
+        self._seen: set[str] = set()
+        self._begun = self._told = time.monotonic()
         if sys.stderr.isatty():
             columns = (
                 TextColumn("{task.description:<24}", markup=False),
@@ -91,15 +94,24 @@ class Reporter:
         if not stage:
             return
         if self._bars is None:
-            if stage not in self._seen:
-                print(f"[{time.monotonic() - self._begun:6.1f} s] {stage}", file=sys.stderr, flush=True)
-            self._seen[stage] = fraction
+            self._tell_in_lines(stage, fraction)
             return
         if stage not in self._tasks:
             for task in self._tasks.values():
                 self._bars.update(task, completed=1.0)
             self._tasks[stage] = self._bars.add_task(stage, total=1.0)
         self._bars.update(self._tasks[stage], completed=fraction)
+
+    def _tell_in_lines(self, stage: str, fraction: float) -> None:
+        now = time.monotonic()
+        if stage not in self._seen:
+            print(f"[{now - self._begun:6.1f} s] {stage}", file=sys.stderr, flush=True)
+        elif now - self._told >= _QUIET:
+            print(f"[{now - self._begun:6.1f} s] {stage}, {100 * fraction:.0f} %", file=sys.stderr, flush=True)
+        else:
+            return
+        self._seen.add(stage)
+        self._told = now
 
 
 def print_answer(

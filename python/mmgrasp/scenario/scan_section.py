@@ -225,7 +225,9 @@ class ScanReader:
         if not found.grasps:
             reasons[name] = found.summary()
         elif rated and not grasps:
-            reasons[name] = f"in none of {rated} grasps do two finger links meet it, closing as far as they may ({CLOSING_PLAY})"
+            reasons[name] = (
+                f"in none of {rated} grasps do two finger links meet it, closing as far as they may ({CLOSING_PLAY})"
+            )
         elif not grasps:
             reasons[name] = f"in all {len(found.grasps)} grasps the pads would meet an edge"
         return Part(name, shapes, T_world_part, grasps, target=False, grasps_too_wide=wide)

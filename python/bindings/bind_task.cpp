@@ -289,10 +289,10 @@ void bind_picks(py::module_& m) {
         return interruptible([&] { return fingers_meet(robot, hand, part, grasps); });
       },
       py::arg("robot"), py::arg("hand"), py::arg("part"), py::arg("grasps"),
-      "Of each grasp of a part, whether two of the hand's finger links meet the part at once, closing from the grasp's\n"
-      "opening by at most 10 mm or a quarter of it: a plan's own check asks for that. Fingers that leave a gap when they\n"
-      "are closed cannot hold what is thinner. Cups have no fingers to close: all True. InvalidInput where the robot\n"
-      "lacks a link or joint of the hand.");
+      "Tells of each grasp of a part whether two of the hand's finger links meet the part at once, closing from the\n"
+      "grasp's opening by at most 10 mm or a quarter of it: a plan's own check asks for that. Fingers that leave a\n"
+      "gap when they are closed cannot hold what is thinner. Cups have no fingers to close: all True. InvalidInput\n"
+      "where the robot lacks a link or joint of the hand.");
   m.def(
       "plan_object_pick",
       [](const JointGroup& arm, const Hand& gripper, const World& world, const std::string& object,

@@ -7302,10 +7302,10 @@ def finger_length_range(grasp: AssemblyGrasp, operation: AssemblyOperation, *, s
     """
 def fingers_meet(robot: Robot, hand: Hand, part: collections.abc.Sequence[LinkShape], grasps: collections.abc.Sequence[Grasp]) -> list[bool]:
     """
-    Of each grasp of a part, whether two of the hand's finger links meet the part at once, closing from the grasp's
-    opening by at most 10 mm or a quarter of it: a plan's own check asks for that. Fingers that leave a gap when they
-    are closed cannot hold what is thinner. Cups have no fingers to close: all True. InvalidInput where the robot
-    lacks a link or joint of the hand.
+    Tells of each grasp of a part whether two of the hand's finger links meet the part at once, closing from the
+    grasp's opening by at most 10 mm or a quarter of it: a plan's own check asks for that. Fingers that leave a
+    gap when they are closed cannot hold what is thinner. Cups have no fingers to close: all True. InvalidInput
+    where the robot lacks a link or joint of the hand.
     """
 def fit_cuboids(points: numpy.typing.ArrayLike, *, T_world_tray: numpy.typing.ArrayLike | None = None, tray_size: numpy.typing.ArrayLike | None = None, wall: float = 0.005, up: numpy.typing.ArrayLike | None = None, eye: numpy.typing.ArrayLike | None = None, plane_tolerance: float = 0.008, wall_margin: float = 0.006, up_angle: float = 0.35, max_height: float = 0.5, cluster_tolerance: float = 0.01, leaf: float = 0.003, min_points: int = 60, plane_iterations: int = 1000) -> CuboidFit:
     """

@@ -9,7 +9,7 @@
 
 namespace mmgrasp {
 
-/// Of each grasp of a part, whether two of the hand's finger links meet the part at once while they close from the
+/// Tells of each grasp of a part whether two of the hand's finger links meet the part at once while they close from the
 /// grasp's opening down to verify::narrowest_grip(): a plan's own check asks for that. Fingers that leave a gap when
 /// they are closed cannot hold what is thinner. Cups have no fingers to close: all true. Throws InvalidInput where the
 /// robot lacks a link or joint of the hand.

@@ -68,7 +68,7 @@ class ClosingHand {
   Eigen::VectorXd q_;
   Pose T_tool_root_;
   CollisionChecker checker_;
-  double opening_ = -1;  ///< Of the fingers of checker_; -1: as the robot has them.
+  double opening_ = -1;  ///< The fingers of checker_ stand so; -1: as the robot has them.
 };
 
 }  // namespace

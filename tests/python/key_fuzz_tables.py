@@ -234,7 +234,7 @@ PLANS: Harmless = {
         f"{ANY_SIGN}, dropped, misspelt",
         "of any sign",
     ),
-    "route[].poses[][]": (f"{ANY_SIGN}, 1e7, 1e300", "of any sign; the check follows the way"),
+    "route[].poses[][]": (ANY_SIGN, "of any sign; the check follows the way"),
     **each(
         """
         scenario.gripper.max_opening scenario.gripper.clearance scenario.positioning_uncertainty
@@ -247,7 +247,7 @@ PLANS: Harmless = {
         "an amount, or none",
     ),
     **each(
-        "scenario.gripper.finger_depth scenario.gripper.finger_width scenario.trays[].size[]",
+        "scenario.gripper.finger_depth scenario.gripper.finger_width",
         "1e-300",
         "an amount above 0",
     ),
@@ -302,8 +302,9 @@ PLANS: Harmless = {
         f"{ANY_SIGN}, 1e7, 1e300, dropped",
         "a heading that a tray was tried with",
     ),
+    "premises.cell": ("1e-300, 0.5, 1e7, 1e300", "a premise, compared by the check"),
     **each(
-        "premises.positioning_uncertainty premises.cell premises.max_distance premises.ik_seeds",
+        "premises.positioning_uncertainty premises.max_distance premises.ik_seeds",
         f"{NO_AMOUNT}, 0.5, 1e7, 1e300",
         "a premise, compared by the check",
     ),

@@ -44,7 +44,7 @@ PARTS = {
                   ("file_fuzz.py {scenario} 20000", "file_fuzz.py plan 20000", *(f"key_fuzz.py {door}" for door in
                    ("scenario", "scanned", "pipe", "assembly", "profile", "gripper", "sensors", "map", "plan")))),
     "frames": Part("frames and maps of surfaces", "frames_fuzz map_file_fuzz scan_refusals"),
-    "readers": Part("files of robots, meshes, clouds and trees", "module_files mesh_fuzz", ("./dev fuzz 600", "mesh_fuzz.py")),
+    "readers": Part("files of robots, meshes, clouds and trees", "module_files mesh_fuzz", ("./dev fuzz 120", "mesh_fuzz.py")),
     "calls": Part("every call, array and number of the stubs",
                   "bad_arguments argument_errors python_arguments odd_objects numbers number_walk texts", ("number_walk.py",)),
     "limits": Part("limits, threads, memory, forks", "limits interpreter threads forks small_processes pickling"),
@@ -54,7 +54,7 @@ PARTS = {
     "verify": Part("changed plans and scenarios", "verify_files plan_mutations mutation_shares",
                    ("mutation_shares.py 4",)),
     "plans": Part("odd scenarios: solved plans hold", "odd_scenarios",
-                  ("odd_scenarios.py 500", "odd_scenarios.py 500 1 {kept} all", "odd_scenarios.py 100 1 {kept} advice")),
+                  ("odd_scenarios.py 500", "odd_scenarios.py 120 1 {kept} all", "odd_scenarios.py 100 1 {kept} advice")),
 }  # fmt: skip
 
 

@@ -303,6 +303,19 @@ def _small_database(scenario: dict[str, Any], draw: Random, _: Path) -> None:
     scenario["reach"] = {"samples": draw.choice([30_000, 100_000, 300_000])}
 
 
+def _thin_parts(scenario: dict[str, Any], draw: Random, _: Path) -> None:
+    """Parts about as thin as the gap that closed fingers leave, and grasps along one direction alone."""
+    thin = draw.choice([0.0004, 0.001, 0.0016, 0.003])
+    scenario["part_types"] = scenario["part_types"] | {
+        "bushing": {"cylinder": {"radius": thin / 2, "length": 0.07}},
+        "bracket": {"box": [thin, 0.05, 0.06]},
+        "ball": {
+            "cylinder": {"radius": 0.01, "length": 0.07},
+            "grasp_options": {"approach_direction": [0.0, 0.0, -1.0]},
+        },
+    }
+
+
 Feature = Callable[[dict[str, Any], Random, Path], None]
 FEATURES: list[tuple[float, Feature]] = [
     (0.4, _uncertainty),
@@ -326,5 +339,6 @@ FEATURES: list[tuple[float, Feature]] = [
     (0.12, _measured_hand),
     (0.25, _small_database),
     (0.25, _wheels),
+    (0.15, _thin_parts),
 ]
 """Features, in this order, each in so large a share of the scenarios."""

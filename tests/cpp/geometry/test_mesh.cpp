@@ -152,6 +152,12 @@ std::shared_ptr<const TriangleMesh> shells(const std::vector<std::pair<Box, bool
   return make_mesh(v, t);
 }
 
+std::string with_returns(const std::string& text) {
+  std::string lines;
+  for (const char c : text) lines += c == '\n' ? "\r\n" : std::string(1, c);
+  return lines;
+}
+
 }  // namespace
 
 TEST(Mesh, EveryFormatGivesTheSameSolid) {
@@ -161,7 +167,8 @@ TEST(Mesh, EveryFormatGivesTheSameSolid) {
                                                        {"c.obj", obj(*box)},
                                                        {"d.ply", ply(*box, "ascii")},
                                                        {"e.ply", ply(*box, "binary_little_endian")},
-                                                       {"f.ply", ply(*box, "binary_big_endian")}};
+                                                       {"f.ply", ply(*box, "binary_big_endian")},
+                                                       {"g.ply", with_returns(ply(*box, "ascii"))}};
   for (const auto& [name, content] : files) {
     const TempFile file(name, content);
     MeshReport report;
@@ -225,6 +232,12 @@ TEST(Mesh, GarbageIsRefusedWithAReason) {
   expect_refused("w.obj", "v 0 0 x\n", "'x' is no number");
   expect_refused("d.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\nf 1 1 2\n", "no triangle with an area");
   expect_refused("h.ply", "ply\nformat ascii 1.0\nelement vertex x\n", "has no count");
+  expect_refused("j.ply", "ply\nformat ascii 1.0\nelement face 12\nproperty list uchar int vertex_indices end_header\n",
+                 "line 4: 'end_header' is more than the line may say");
+  expect_refused("k.ply", "ply format ascii 1.0\n", "line 1: 'format' is more");
+  expect_refused("l.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float\nx\n",
+                 "line 4: a property has no name");
+  expect_refused("m.ply", "ply\nformat ascii 1.0\ncomment a\felement vertex 1\n", "line 3: a control character");
   expect_refused("g.dae", "<COLLADA>", "DAE");
   expect_refused("a.step", "ISO-10303-21;", "extension '.step'");
   std::string nan = binary_stl(*shape_mesh(Box{{1, 1, 1}}));

@@ -40,6 +40,8 @@ class WordReader {
 
   /// Next word, or an empty view at the end.
   std::string_view next();
+  /// Next word of the line that the last one stood in, or an empty view at its end.
+  std::string_view next_in_line();
   /// Next word read as a number; anything else is an IoError naming the line.
   double number(const char* what);
   /// Skips the rest of the line the last word stood in.

@@ -54,6 +54,11 @@ std::string_view WordReader::next() {
   return text_.substr(begin, position_ - begin);
 }
 
+std::string_view WordReader::next_in_line() {
+  while (position_ < text_.size() && text_[position_] != '\n' && is_blank(text_[position_])) ++position_;
+  return position_ < text_.size() && text_[position_] != '\n' ? next() : std::string_view();
+}
+
 double WordReader::number(const char* what) {
   const std::string_view word = next();
   double value = 0;

@@ -72,8 +72,10 @@ class PlyReader {
   }
 
  private:
+  /// One entry a line, as PLY has it: assimp, by which a plan is checked, does not end on some that run on.
   void read_header() {
     if (words_.next() != "ply") mesh_error(path_, "does not start with 'ply'");
+    end_entry();
     while (true) {
       const std::string_view word = words_.next();
       if (word.empty()) words_.fail("header ends without 'end_header' (truncated)");
@@ -84,8 +86,8 @@ class PlyReader {
         read_format();
       } else if (word == "element") {
         Element element;
-        element.name = std::string(words_.next());
-        if (!parse_integer(words_.next(), element.count) || element.count < 0) {
+        element.name = std::string(words_.next_in_line());
+        if (!parse_integer(words_.next_in_line(), element.count) || element.count < 0) {
           words_.fail("element '" + element.name + "' has no count");
         }
         elements_.push_back(element);
@@ -94,13 +96,27 @@ class PlyReader {
       } else {
         words_.fail("'" + std::string(word.substr(0, 40)) + "' is no PLY header word");
       }
+      end_entry();
     }
-    words_.skip_line();
+    end_entry();
     at_ = std::min(words_.position() + 1, content_.size());
   }
 
+  /// Refuses what the line says beyond its entry, and characters that some readers take for its end.
+  void end_entry() {
+    const std::string_view more = words_.next_in_line();
+    if (!more.empty()) words_.fail("'" + std::string(more.substr(0, 40)) + "' is more than the line may say");
+    const std::size_t end = words_.position();
+    const std::size_t before = end > 0 ? content_.rfind('\n', end - 1) : std::string_view::npos;
+    std::string_view line = content_.substr(before == std::string_view::npos ? 0 : before + 1);
+    line = line.substr(0, line.find('\n'));
+    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    const auto is_control = [](char c) { return static_cast<unsigned char>(c) < ' ' && c != '\t'; };
+    if (std::any_of(line.begin(), line.end(), is_control)) words_.fail("a control character in the header");
+  }
+
   void read_format() {
-    const std::string_view word = words_.next();
+    const std::string_view word = words_.next_in_line();
     if (word == "ascii")
       encoding_ = Encoding::ascii;
     else if (word == "binary_little_endian")
@@ -115,15 +131,16 @@ class PlyReader {
   void read_property() {
     if (elements_.empty()) words_.fail("a property before the first element");
     Property property;
-    std::string_view word = words_.next();
+    std::string_view word = words_.next_in_line();
     property.is_list = word == "list";
     if (property.is_list) {
-      if (!parse_scalar(words_.next(), property.count_type)) words_.fail("unknown list count type");
-      word = words_.next();
+      if (!parse_scalar(words_.next_in_line(), property.count_type)) words_.fail("unknown list count type");
+      word = words_.next_in_line();
     }
     if (!parse_scalar(word, property.type))
       words_.fail("property type '" + std::string(word.substr(0, 40)) + "' is unknown");
-    property.name = std::string(words_.next());
+    property.name = std::string(words_.next_in_line());
+    if (property.name.empty()) words_.fail("a property has no name");
     elements_.back().properties.push_back(property);
   }
 

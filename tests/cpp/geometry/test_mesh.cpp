@@ -238,6 +238,11 @@ TEST(Mesh, GarbageIsRefusedWithAReason) {
   expect_refused("l.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float\nx\n",
                  "line 4: a property has no name");
   expect_refused("m.ply", "ply\nformat ascii 1.0\ncomment a\felement vertex 1\n", "line 3: a control character");
+  expect_refused("o.ply", "ply\nformat ascii 1.0\nelement 99999999face 12\n",
+                 "line 3: element '99999999face' must begin");
+  const std::string strips = ply(*shape_mesh(Box{{1, 1, 1}}), "ascii");
+  expect_refused("p.ply", std::string(strips).replace(strips.find("element face"), 12, "element tristrips"),
+                 "no triangle");
   expect_refused("g.dae", "<COLLADA>", "DAE");
   expect_refused("a.step", "ISO-10303-21;", "extension '.step'");
   std::string nan = binary_stl(*shape_mesh(Box{{1, 1, 1}}));

@@ -1,5 +1,6 @@
 // PLY files, ascii and binary.
 #include <algorithm>
+#include <cctype>
 #include <cstdint>
 #include <cstring>
 
@@ -87,6 +88,9 @@ class PlyReader {
       } else if (word == "element") {
         Element element;
         element.name = std::string(words_.next_in_line());
+        if (element.name.empty() || !std::isalpha(static_cast<unsigned char>(element.name.front()))) {
+          words_.fail("element '" + element.name.substr(0, 40) + "' must begin with a letter");  // assimp counts by it
+        }
         if (!parse_integer(words_.next_in_line(), element.count) || element.count < 0) {
           words_.fail("element '" + element.name + "' has no count");
         }
@@ -181,13 +185,13 @@ class PlyReader {
 
   void read_record(const Element& element) {
     poll_();
-    const bool is_vertex = element.name == "vertex";
+    const bool is_vertex = element.name == "vertex", is_face = element.name == "face";
     Eigen::Vector3d vertex = Eigen::Vector3d::Zero();
     for (const Property& property : element.properties) {
       if (property.is_list) {
         std::vector<int> list(read_count(property, element));
         for (int& index : list) index = static_cast<int>(std::clamp(read_value(property.type, element), -1.0, 2e9));
-        if (property.name != "vertex_indices" && property.name != "vertex_index") continue;
+        if (!is_face || (property.name != "vertex_indices" && property.name != "vertex_index")) continue;
         if (list.size() < 3) mesh_error(path_, "a face has " + std::to_string(list.size()) + " corners, needs three");
         add_polygon(mesh_, list);
       } else {

@@ -285,14 +285,19 @@ void bind_picks(py::module_& m) {
       "InvalidInput when the robot at home is not free there.");
   m.def(
       "fingers_meet",
-      [](const Robot& robot, const Hand& hand, const std::vector<LinkShape>& part, const std::vector<Grasp>& grasps) {
-        return interruptible([&] { return fingers_meet(robot, hand, part, grasps); });
+      [](const JointGroup& arm, const Hand& hand, const std::vector<LinkShape>& part, const std::vector<Grasp>& grasps,
+         double mesh_tolerance) {
+        return interruptible([&] { return fingers_meet(arm, hand, part, grasps, mesh_tolerance); });
       },
-      py::arg("robot"), py::arg("hand"), py::arg("part"), py::arg("grasps"),
+      py::arg("arm"), py::arg("hand"), py::arg("part"), py::arg("grasps"), py::kw_only(),
+      py::arg("mesh_tolerance") = 0.0,
       "Tells of each grasp of a part whether two of the hand's finger links meet the part at once, closing from the\n"
-      "grasp's opening by at most 10 mm or a quarter of it: a plan's own check asks for that. Fingers that leave a\n"
-      "gap when they are closed cannot hold what is thinner. Cups have no fingers to close: all True. InvalidInput\n"
-      "where the robot lacks a link or joint of the hand.");
+      "grasp's opening by at most 10 mm or a quarter of it, whichever is more, wherever within 0.2 mm along the\n"
+      "closing axis the hand stands: a plan's own check asks for that. Fingers that leave a gap when they are closed\n"
+      "cannot hold what is thinner. `arm`, whose tip carries the hand, says how all other joints stand; its robot's\n"
+      "meshes may stick out by `mesh_tolerance` [m] beyond those of the check. Cups have no\n"
+      "fingers to close: all True. InvalidInput where its robot lacks a link or joint of the hand, or an opening is\n"
+      "beyond the hand's.");
   m.def(
       "plan_object_pick",
       [](const JointGroup& arm, const Hand& gripper, const World& world, const std::string& object,

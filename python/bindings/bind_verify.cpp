@@ -356,15 +356,12 @@ void bind_verify(py::module_& top) {
       });
   m.def(
       "overlapping_bodies",
-      [](const std::vector<CheckedBody>& bodies, py::object progress) {
-        return LongCall(std::move(progress)).run([&](const Monitor& monitor) {
-          monitor.report("bodies that overlap", 0.0);
-          return overlapping_bodies(bodies);
-        });
+      [](const std::vector<CheckedBody>& bodies, const Progress& progress) {
+        return LongCall(progress).run([&](const Monitor& monitor) { return overlapping_bodies(bodies, monitor); });
       },
       py::arg("bodies"), py::kw_only(), py::arg("progress") = py::none(),
       "Index pairs of the bodies that overlap by more than 1e-4 m; those that just touch do not. `progress(stage, "
-      "fraction)`\nhears once a second that it is under way.");
+      "fraction)`\nhears how far it is.");
   m.def(
       "pads_unlike_grasp",
       [](const Hand& hand, const std::vector<LinkShape>& part, const CheckedGrasp& grasp) {

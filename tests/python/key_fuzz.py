@@ -221,7 +221,7 @@ def fuzz(door: str, folder: Path, most: int | None = None, seed: int = 1) -> Res
 
 
 def unneeded(door: str, needed: set[tuple[str, str]]) -> list[str]:
-    """Entries of the list that no change of the document needed; those of places that it does not have are left out, and
+    """Entries of the list of which no change of the document was read; those of places that it does not have are left out, and
     those that are judged where a door before this one has the same list and such a place."""
     sound = DOORS[door].sound
     there = {entry for place in places(document_of(door)) for entry in listed(place, sound)}

@@ -133,9 +133,13 @@ void check_all(const PlanToCheck& plan, const PlanCheckOptions& options, const M
 
 }  // namespace
 
-std::vector<std::pair<std::size_t, std::size_t>> overlapping_bodies(const std::vector<CheckedBody>& bodies) {
+std::vector<std::pair<std::size_t, std::size_t>> overlapping_bodies(const std::vector<CheckedBody>& bodies,
+                                                                    const Monitor& monitor) {
   std::vector<PlacedBody> placed;
-  for (const CheckedBody& body : bodies) placed.push_back(place_body(body.name, body.shapes, body.T_world_body));
+  for (const CheckedBody& body : bodies) {
+    monitor.report("bodies that overlap", static_cast<double>(placed.size()) / static_cast<double>(bodies.size()));
+    placed.push_back(place_body(body.name, body.shapes, body.T_world_body));
+  }
   return overlapping(placed, 0);
 }
 

@@ -7300,12 +7300,15 @@ def finger_length_range(grasp: AssemblyGrasp, operation: AssemblyOperation, *, s
     """
     The finger lengths with which neither fingers nor palm meet the subassemblies: on the approach, along the whole motion, and while the gripper opens and moves back (P1 5.3.2, 5.3.3). The palm and what carries it count as endless. Exact for motions along the approach; others are checked every `step` [m] with as much margin.
     """
-def fingers_meet(robot: Robot, hand: Hand, part: collections.abc.Sequence[LinkShape], grasps: collections.abc.Sequence[Grasp]) -> list[bool]:
+def fingers_meet(arm: JointGroup, hand: Hand, part: collections.abc.Sequence[LinkShape], grasps: collections.abc.Sequence[Grasp], *, mesh_tolerance: float = 0.0) -> list[bool]:
     """
     Tells of each grasp of a part whether two of the hand's finger links meet the part at once, closing from the
-    grasp's opening by at most 10 mm or a quarter of it: a plan's own check asks for that. Fingers that leave a
-    gap when they are closed cannot hold what is thinner. Cups have no fingers to close: all True. InvalidInput
-    where the robot lacks a link or joint of the hand.
+    grasp's opening by at most 10 mm or a quarter of it, whichever is more, wherever within 0.2 mm along the
+    closing axis the hand stands: a plan's own check asks for that. Fingers that leave a gap when they are closed
+    cannot hold what is thinner. `arm`, whose tip carries the hand, says how all other joints stand; its robot's
+    meshes may stick out by `mesh_tolerance` [m] beyond those of the check. Cups have no
+    fingers to close: all True. InvalidInput where its robot lacks a link or joint of the hand, or an opening is
+    beyond the hand's.
     """
 def fit_cuboids(points: numpy.typing.ArrayLike, *, T_world_tray: numpy.typing.ArrayLike | None = None, tray_size: numpy.typing.ArrayLike | None = None, wall: float = 0.005, up: numpy.typing.ArrayLike | None = None, eye: numpy.typing.ArrayLike | None = None, plane_tolerance: float = 0.008, wall_margin: float = 0.006, up_angle: float = 0.35, max_height: float = 0.5, cluster_tolerance: float = 0.01, leaf: float = 0.003, min_points: int = 60, plane_iterations: int = 1000) -> CuboidFit:
     """

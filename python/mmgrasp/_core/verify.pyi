@@ -706,10 +706,10 @@ def check_plan(plan: PlanToCheck, *, progress: collections.abc.Callable[[str, fl
         seed: int = 20240607  # of the base poses drawn
         threads: int = 0  # 0: all
     """
-def overlapping_bodies(bodies: collections.abc.Sequence[CheckedBody], *, progress: typing.Any | None = None) -> list[tuple[int, int]]:
+def overlapping_bodies(bodies: collections.abc.Sequence[CheckedBody], *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None) -> list[tuple[int, int]]:
     """
     Index pairs of the bodies that overlap by more than 1e-4 m; those that just touch do not. `progress(stage, fraction)`
-    hears once a second that it is under way.
+    hears how far it is.
     """
 def pads_unlike_grasp(hand: mmgrasp._core.Hand, part: collections.abc.Sequence[mmgrasp._core.LinkShape], grasp: CheckedGrasp) -> str:
     """

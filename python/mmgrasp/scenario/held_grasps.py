@@ -2,14 +2,28 @@
 
 from __future__ import annotations
 
-from .. import _core
-from .._core import Grasp, Hand, LinkShape, Robot
+from dataclasses import dataclass
 
-CLOSING_PLAY = "10 mm or a quarter of it"
+from .. import _core
+from .._core import Grasp, Hand, JointGroup, LinkShape
+
+CLOSING_PLAY = "10 mm or a quarter of it, whichever is more"
 """How far below a part's width fingers may close to meet it: verify::narrowest_grip() in words."""
 
 
-def held(robot: Robot, gripper: Hand, shapes: list[LinkShape], grasps: list[Grasp]) -> list[Grasp]:
-    """Those of the grasps at which the closing fingers meet the part, as `verify` asks."""
-    meet = _core.fingers_meet(robot, gripper, shapes, grasps)
-    return [grasp for grasp, meets in zip(grasps, meet, strict=True) if meets]
+@dataclass(frozen=True)
+class ClosingHand:
+    """A hand at its arm, asked which grasps hold."""
+
+    arm: JointGroup
+    hand: Hand
+    mesh_tolerance: float = 0.0
+    """Its meshes may stick out so far beyond those by which `verify` judges [m]."""
+
+    def meets(self, shapes: list[LinkShape], grasps: list[Grasp]) -> list[bool]:
+        """Of each grasp, whether the closing fingers meet the part, as `verify` asks."""
+        return _core.fingers_meet(self.arm, self.hand, shapes, grasps, mesh_tolerance=self.mesh_tolerance)
+
+    def held(self, shapes: list[LinkShape], grasps: list[Grasp]) -> list[Grasp]:
+        """Those of the grasps at which the closing fingers meet the part."""
+        return [grasp for grasp, meets in zip(grasps, self.meets(shapes, grasps), strict=True) if meets]

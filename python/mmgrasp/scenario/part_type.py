@@ -7,9 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from .._core import Grasp, Hand, LinkShape, Robot
+from .._core import Grasp, LinkShape
 from .._progress import Progress
 from ..documents.reading import Node
+from .held_grasps import ClosingHand
 from .straight_down import with_grasps_down
 
 
@@ -25,12 +26,10 @@ class PartType:
     """[kg]; 0: not said."""
     why_none: str = ""
     """Why suction cups found no grasp."""
-    gripper: Hand | None = None
+    closing: ClosingHand | None = None
     """Whose pads the grasps were sampled for; None: they are listed, or a hand's of suction cups."""
-    robot: Robot | None = None
-    """With this gripper."""
     not_met: int = 0
-    """Sampled grasps that are left out because its fingers do not meet the part."""
+    """Sampled grasps that are left out because the fingers do not meet the part."""
     grasp_options: dict[str, Any] = field(default_factory=dict)
     progress: Progress = None
     """Hears that its grasps are sought."""
@@ -43,14 +42,14 @@ class PartType:
 
     def grasps_on(self, T_tray_part: np.ndarray) -> list[Grasp]:
         """The grasps of a part that lies so in its tray (4, 4): the type's, and others straight down where few of these are."""
-        if self.gripper is None or self.robot is None or "approach_direction" in self.grasp_options:
+        if self.closing is None or "approach_direction" in self.grasp_options:
             return self.grasps
         down = np.round(-T_tray_part[2, :3], 9)  # in the part's frame, alike for parts that are turned about it
         known = tuple(down.tolist())
         if known not in self._by_direction:
             down /= np.linalg.norm(down)
             self._by_direction[known] = with_grasps_down(
-                self.shapes, self.robot, self.gripper, self.grasps, down, self.grasp_options, self.progress
+                self.shapes, self.closing, self.grasps, down, self.grasp_options, self.progress
             )
         return self._by_direction[known]
 

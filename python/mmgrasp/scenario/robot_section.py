@@ -54,6 +54,8 @@ class RobotSetup:
     other_joints: dict[str, float]
     closing_speed: float = 0.1
     """How fast the gripper's opening shrinks [m/s] (P1 4.4.1)."""
+    mesh_tolerance: float = 0.0
+    """Of the coarsest of its robots [m]."""
 
 
 @dataclass
@@ -194,7 +196,7 @@ def read_setup(sections: RobotSections, progress: Progress = None) -> RobotSetup
         sections.gripper["closing_speed"].number(least=1e-4, most=10) if "closing_speed" in sections.gripper else 0.1
     )
     place_region = _read_place_region(sections.place_region, bin_pose)
-    return RobotSetup(robot, arm, group, gripper, place_region, home, other, speed)
+    return RobotSetup(robot, arm, group, gripper, place_region, home, other, speed, _mesh_tolerance(node))
 
 
 @dataclass
@@ -258,6 +260,11 @@ def compose(node: Node) -> Robot:
         with frame.blamed():
             robot = robot.with_link(frame["name"].string(), frame["parent"].string(), T, shapes)
     return robot
+
+
+def _mesh_tolerance(robot: Node) -> float:
+    parts = [robot, *(robot["mount"].elements() if "mount" in robot else [])]
+    return max(part["mesh_tolerance"].number(least=0) if "mesh_tolerance" in part else 0.0 for part in parts)
 
 
 def _load(node: Node, base: str, limits: dict[str, float]) -> Robot:
@@ -356,9 +363,10 @@ def _read_gripper(node: Node, robot: Robot, tool_link: str) -> Hand:
         name = joint["name"].string()
         if name in [other.name for other in joints]:
             joint["name"].fail("is listed twice")
-        joints.append(
-            HandJoint(name, _joint_value(robot, name, joint["closed"]), _joint_value(robot, name, joint["open"]))
-        )
+        closed, opened = (_joint_value(robot, name, joint[key]) for key in ("closed", "open"))
+        if closed == opened:
+            joint["open"].fail("must differ from closed: the joint would not move")
+        joints.append(HandJoint(name, closed, opened))
     links = node["finger_links"].elements()
     for link in links:
         _link(robot, link)
@@ -383,17 +391,22 @@ def _read_gripper(node: Node, robot: Robot, tool_link: str) -> Hand:
 
 
 def _check_finger_travel(node: Node, robot: Robot, hand: Hand) -> None:
-    """Both fingers meet a part at once: each that slides along `closing` goes half of the opening."""
+    """Both fingers meet a part at once: those that slide go half of the opening along `closing`, apart as they open."""
     ends = [robot.link_poses(hand.joint_values(opening)) for opening in (0.0, hand.max_opening)]
+    ways = {}
     for link in hand.finger_links:
         closed, opened = (np.linalg.inv(poses[hand.tool_link]) @ poses[link] for poses in ends)
-        travel = abs(hand.closing @ (opened - closed)[:3, 3])
-        slides = np.allclose(opened[:3, :3], closed[:3, :3], atol=1e-9) and travel > 1e-9
-        if slides and abs(travel - hand.max_opening / 2) > 1e-3:
+        moved = (opened - closed)[:3, 3]
+        if np.linalg.norm(moved) > 1e-9 and np.allclose(opened[:3, :3], closed[:3, :3], atol=1e-9):
+            ways[link] = hand.closing @ moved
+    for link, way in ways.items():
+        if abs(abs(way) - hand.max_opening / 2) > 1e-3:
             node.fail(
-                f"{link} moves {travel:.4g} m along closing between closed and open: must be half of max_opening, "
+                f"{link} moves {abs(way):.4g} m along closing between closed and open: must be half of max_opening, "
                 f"{hand.max_opening / 2:.4g} m, so that both fingers meet the part at once"
             )
+    if len(ways) > 1 and abs(sum(np.sign(list(ways.values())))) == len(ways):
+        node.fail(f"{' and '.join(ways)} move the same way along closing: fingers must move apart as they open")
 
 
 def _axes(node: Node) -> dict[str, Any]:
@@ -413,8 +426,7 @@ def _axes(node: Node) -> dict[str, Any]:
 
 def _gripper_from_robot(node: Node, robot: Robot, tool_link: str, payload: float) -> Hand:
     """A hand measured on the robot's own shapes; what the section states goes first."""
-    node.mapping("from_robot", "approach closing clearance closing_speed payload")
-    source = node["from_robot"]
+    source = node.mapping("from_robot", "approach closing clearance closing_speed payload")["from_robot"]
     if source.raw is not True and not isinstance(source.raw, str):
         source.fail("must be an SRDF end effector or group, or true: every joint below the tool frame's body")
     stated = _axes(node)

@@ -13,13 +13,13 @@ from typing import Any
 import numpy as np
 
 from .. import _core
-from .._core import Box, Grasp, Hand, InvalidInput, IoError, LinkShape, Outcome, Part, ProbabilisticSdf, Robot
+from .._core import Box, Grasp, Hand, InvalidInput, IoError, LinkShape, Outcome, Part, ProbabilisticSdf
 from .._files import printable, sha256_of
 from .._progress import Progress, is_callers
 from ..documents.reading import Node
 from ..scan.map_folder import MAP, TrayObject, load_map, objects_in_tray
 from ..scan.rendered import Tour, rendered_map
-from .held_grasps import CLOSING_PLAY, held
+from .held_grasps import CLOSING_PLAY, ClosingHand
 from .map_bodies import Footprint, cell_boxes, cells_around, edge_for, inside_boxes, large_pieces, object_boxes
 
 SIGMAS = 2.0
@@ -72,14 +72,13 @@ class ScanReader:
 
     def __init__(
         self,
-        robot: Robot,
-        gripper: Hand,
+        closing: ClosingHand,
         scene: list[LinkShape],
         find: Callable[[Node], Path],
         progress: Progress,
     ) -> None:
         """`scene`: the typed obstacles in the world, which rendered frames show too; `find`: file that a node names."""
-        self._robot, self._gripper, self._scene = robot, gripper, scene
+        self._closing, self._gripper, self._scene = closing, closing.hand, scene
         self._find, self._progress = find, progress
         self._maps: dict[Path, _LoadedMap] = {}
 
@@ -221,7 +220,7 @@ class ScanReader:
             if between is not None and abs(between - grasp.opening) <= _WIDTH_PLAY:
                 grasps.append(Grasp(T, grasp.opening, quality=grasp.quality))
         wide, rated = found.counts["too_wide"], len(grasps)
-        grasps = held(self._robot, self._gripper, shapes, grasps)
+        grasps = self._closing.held(shapes, grasps)
         if not found.grasps:
             reasons[name] = found.summary()
         elif rated and not grasps:

@@ -22,6 +22,7 @@ from ..documents.reading import RENAMED, Node, read_yaml
 from . import cell_bodies, drawn_bodies, floor_map
 from .contact_rules import ContactRules, read_contact_rules
 from .grid_size import check_grid_size
+from .held_grasps import ClosingHand
 from .part_type import PartType
 from .robot_section import RobotSetup, choose_sections, find_file, read_setup
 from .scan_section import ScanReader, moved
@@ -182,8 +183,9 @@ def _read_scenario(
     if setup.robot.base == "fixed":
         root["robot"].fail("a part-supply round needs base: diff_drive or omni")
     _check_metres(root, obstacles, setup.robot.base_limits["workspace"])
-    types = read_part_types(root["part_types"], setup.robot, setup.gripper, progress) if "part_types" in root else {}
-    scans = ScanReader(setup.robot, setup.gripper, _in_world(obstacles), find_file, progress)
+    closing = ClosingHand(setup.arm, setup.gripper, setup.mesh_tolerance)
+    types = read_part_types(root["part_types"], closing, progress) if "part_types" in root else {}
+    scans = ScanReader(closing, _in_world(obstacles), find_file, progress)
     trays = _read_trays(root, types, setup, scans)
     _warn_of_a_small_bin(trays, types, setup.place_region.size)
     check_grid_size(root, trays, {key: value for key, (value, _) in _core._supply_option_table().items()} | options)

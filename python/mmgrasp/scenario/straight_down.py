@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from .. import _core
-from .._core import Grasp, Hand, LinkShape, Robot
+from .._core import Grasp, LinkShape
 from .._progress import Progress
-from .held_grasps import held
+from .held_grasps import ClosingHand
 
 MIN_STRAIGHT = 8  # grasps straight down; where there are fewer, more are drawn
 MOST_ADDED = 24  # grasps at most that join those of the type
@@ -19,8 +19,7 @@ FLUSH = 1e-6  # tips of pads reach no farther beyond the part's far face [m]
 
 def with_grasps_down(
     shapes: list[LinkShape],
-    robot: Robot,
-    gripper: Hand,
+    closing: ClosingHand,
     grasps: list[Grasp],
     down: np.ndarray,
     options: dict[str, Any],
@@ -30,6 +29,7 @@ def with_grasps_down(
 
     `options` are those of the sampler; the worst grasps that are not straight down make room for what is drawn.
     """
+    gripper = closing.hand
     far_face = _far_face(shapes, down)
 
     def is_usable(grasp: Grasp) -> bool:
@@ -46,7 +46,7 @@ def with_grasps_down(
     asked = {**options, "approach_direction": down, "max_grasps": MOST_DRAWN}
     drawn, _ = _core._sample_grasps(shapes, gripper, progress=progress, **asked)
     new = [grasp for grasp in drawn if is_usable(grasp) and not _is_among(straight, grasp)]
-    new = held(robot, gripper, shapes, new)
+    new = closing.held(shapes, new)
     most = options.get("max_grasps", _core._grasp_option_table()["max_grasps"][0])
     new = new[: min(MOST_ADDED, most - len(straight))]
     if not new:

@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 
 from .. import _core
-from .._core import Box, Grasp, Hand, LinkShape, Part, Robot, Tray
+from .._core import Box, Grasp, Hand, LinkShape, Part, Tray
 from .._core import verify as checks
 from .._files import printable
 from .._progress import Progress
 from ..documents.reading import Node, near_miss
 from .cup_grasps import read_cup_grasps
-from .held_grasps import CLOSING_PLAY, held
+from .held_grasps import CLOSING_PLAY, ClosingHand
 from .part_type import PartType, read_grasp_options
 from .robot_section import find_file
 from .scan_section import ScanReader, TrayScan, moved
@@ -23,6 +23,7 @@ from .tray_body import BODY_KEYS, STEEPEST, WALL, TrayBody, read_tray_body, tilt
 
 MOST_PARTS = 1000  # in one tray
 MOST_HEADINGS = 360  # of one tray
+_MOST_GRASPS = 1_000_000  # that the sampler draws
 LARGEST_TRAY = 100.0  # [m]
 GAP = 0.001  # parts rest this far above the floor, so that nothing touches at rest [m]
 
@@ -52,9 +53,10 @@ class TraySetup:
         return [name for name, own in self.kinds.items() if own == kind]
 
 
-def read_part_types(node: Node, robot: Robot, gripper: Hand, progress: Progress = None) -> dict[str, PartType]:
-    """The section `part_types` for the gripper of a robot, which takes long where parts are fine meshes; raises InvalidInput for grasps that hold nothing."""
+def read_part_types(node: Node, closing: ClosingHand, progress: Progress = None) -> dict[str, PartType]:
+    """The section `part_types`, which takes long where parts are fine meshes; raises InvalidInput for grasps that hold nothing."""
     types: dict[str, PartType] = {}
+    gripper = closing.hand
     entries = list(node.items())
     for name, entry in entries:
         tell = _telling_of(name, len(types) / len(entries), progress)
@@ -71,10 +73,10 @@ def read_part_types(node: Node, robot: Robot, gripper: Hand, progress: Progress 
             grasps, too_wide = _listed_grasps(entry["grasps"], gripper)
             _check_they_hold(entry["grasps"], name, shapes, grasps, gripper)
             _check_openings(entry["grasps"], name, shapes, gripper)
-            _check_fingers_meet(entry["grasps"], name, shapes, robot, gripper)
+            _check_fingers_meet(entry["grasps"], name, shapes, closing)
             types[name] = PartType(shapes, grasps, too_wide, entry, mass)
         else:
-            types[name] = _sampled_type(shapes, entry, mass, robot, gripper, options, tell)
+            types[name] = _sampled_type(shapes, entry, mass, closing, options, tell)
     return types
 
 
@@ -82,21 +84,24 @@ def _sampled_type(
     shapes: list[LinkShape],
     entry: Node,
     mass: float,
-    robot: Robot,
-    gripper: Hand,
+    closing: ClosingHand,
     options: dict[str, Any],
     progress: Progress,
 ) -> PartType:
-    drawn, too_wide = _core._sample_grasps(shapes, gripper, progress=progress, **options)
-    grasps = held(robot, gripper, shapes, drawn)
+    most = options.get("max_grasps", _core._grasp_option_table()["max_grasps"][0])
+    drawn, too_wide = _core._sample_grasps(shapes, closing.hand, progress=progress, **options)
+    grasps = closing.held(shapes, drawn)
+    if len(grasps) < len(drawn) == most:  # There may be others in their place.
+        more = {**options, "max_grasps": min(8 * most, _MOST_GRASPS)}
+        drawn, too_wide = _core._sample_grasps(shapes, closing.hand, progress=progress, **more)
+        grasps = closing.held(shapes, drawn)[:most]
     return PartType(
         shapes,
         grasps,
         too_wide,
         entry,
         mass,
-        gripper=gripper,
-        robot=robot,
+        closing=closing,
         not_met=len(drawn) - len(grasps),
         grasp_options=options,
         progress=progress,
@@ -171,11 +176,11 @@ def _check_openings(node: Node, name: str, shapes: list[LinkShape], gripper: Han
             entry["opening"].fail(f"does not hold part type {name}: {unlike}")
 
 
-def _check_fingers_meet(node: Node, name: str, shapes: list[LinkShape], robot: Robot, gripper: Hand) -> None:
+def _check_fingers_meet(node: Node, name: str, shapes: list[LinkShape], closing: ClosingHand) -> None:
     """Refuses grasps at which the closing fingers do not meet the part, by the rule of `verify`."""
     listed = [(entry, Grasp(entry["pose"].pose(), entry["opening"].number(least=0))) for entry in node.elements()]
-    fitting = [(entry, grasp) for entry, grasp in listed if grasp.opening <= gripper.max_opening]
-    meet = _core.fingers_meet(robot, gripper, shapes, [grasp for _, grasp in fitting])
+    fitting = [(entry, grasp) for entry, grasp in listed if grasp.opening <= closing.hand.max_opening]
+    meet = closing.meets(shapes, [grasp for _, grasp in fitting])
     for (entry, _), meets in zip(fitting, meet, strict=True):
         if not meets:
             entry.fail(
@@ -425,13 +430,15 @@ def _check_graspable(name: str, kind: PartType, grasps: list[Grasp], gripper: Ha
     if kind.not_met:
         kind.node.fail(
             f"part {name} has no grasp: in none of {kind.not_met} do two finger links of the gripper meet it, closing from its "
-            f"width as far as they may ({CLOSING_PLAY}); is it thinner than the gap that they leave when they are closed?"
+            f"width as far as they may ({CLOSING_PLAY}): it is thinner than the gap that they leave, or their faces stand too far back"
         )
     if kind.too_wide:
         kind.node.fail(
             f"part {name} is larger than the gripper: none of {kind.too_wide} grasps fits its opening of "
             f"{gripper.max_opening:g} m"
         )
+    if not kind.sampled:
+        kind.node["grasps"].fail(f"part {name} has no grasp: none is listed")
     kind.node.fail(f"part {name} has no grasp: no two opposite surfaces were found for the gripper")
 
 
@@ -440,7 +447,7 @@ def _refuse_at_option(name: str, kind: PartType, gripper: Hand) -> None:
 
     def count_with(options: dict[str, Any]) -> int:
         drawn, _ = _core._sample_grasps(kind.shapes, gripper, progress=kind.progress, **options)
-        return len(drawn if kind.robot is None else held(kind.robot, gripper, kind.shapes, drawn))
+        return len(drawn if kind.closing is None else kind.closing.held(kind.shapes, drawn))
 
     for key in kind.grasp_options:
         count = count_with({other: value for other, value in kind.grasp_options.items() if other != key})

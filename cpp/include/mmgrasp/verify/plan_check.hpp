@@ -106,7 +106,7 @@ MMGRASP_EXPORT PlanCheckResult check_plan(const PlanToCheck& plan, const PlanChe
 /// Indices of the pairs of bodies that overlap by more than 1e-4 m, each pair once and in ascending order: bodies that
 /// just touch do not. Throws InvalidInput for an unusable shape.
 MMGRASP_EXPORT std::vector<std::pair<std::size_t, std::size_t>> overlapping_bodies(
-    const std::vector<CheckedBody>& bodies);
+    const std::vector<CheckedBody>& bodies, const Monitor& monitor = {});
 
 /// The fingers of a parallel gripper: unit axes in the tool frame, size of the pads [m].
 struct CheckedPads {

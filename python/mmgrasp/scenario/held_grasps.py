@@ -21,7 +21,7 @@ class ClosingHand:
     """Its meshes may stick out so far beyond those by which `verify` judges [m]."""
 
     def meets(self, shapes: list[LinkShape], grasps: list[Grasp]) -> list[bool]:
-        """Of each grasp, whether the closing fingers meet the part, as `verify` asks."""
+        """Says of each grasp whether the closing fingers meet the part, as `verify` asks."""
         return _core.fingers_meet(self.arm, self.hand, shapes, grasps, mesh_tolerance=self.mesh_tolerance)
 
     def held(self, shapes: list[LinkShape], grasps: list[Grasp]) -> list[Grasp]:

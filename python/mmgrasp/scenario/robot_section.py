@@ -55,7 +55,7 @@ class RobotSetup:
     closing_speed: float = 0.1
     """How fast the gripper's opening shrinks [m/s] (P1 4.4.1)."""
     mesh_tolerance: float = 0.0
-    """Of the coarsest of its robots [m]."""
+    """The coarsest one of its robots [m]."""
 
 
 @dataclass

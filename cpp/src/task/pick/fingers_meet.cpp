@@ -77,7 +77,7 @@ class ClosingHand {
   Eigen::VectorXd q_;
   Pose T_tool_root_;
   CollisionChecker checker_;
-  std::map<double, CollisionChecker> kept_;  ///< By how far they are open.
+  std::map<double, CollisionChecker> kept_;  ///< Openings of the fingers [m] and checkers of them.
 };
 
 void check_grasps(const JointGroup& arm, const Hand& hand, const std::vector<Grasp>& grasps, double mesh_tolerance) {

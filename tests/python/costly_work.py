@@ -236,7 +236,7 @@ def sampled_by_cups() -> CALL:
 
 def many_grasps_of_nothing() -> CALL:
     hand = ao.gripper()
-    grasps = [mg.Grasp(mg.pose([9, 0, 0]), 0.02)] * 20_000
+    grasps = [mg.Grasp(mg.pose([9, 0, 0]), 0.02)] * 1_000_000
     return lambda: mg.grasping.fingers_meet(ao.ARM, hand, [BOX], grasps)
 
 

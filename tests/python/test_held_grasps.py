@@ -58,6 +58,11 @@ def test_grasps_across_the_thin_side_are_left_out_and_others_stay(tmp_path: Path
     assert min(grasp.opening for grasp in grasps) > 0.04
 
 
+def test_others_take_the_places_of_grasps_that_are_left_out(tmp_path: Path) -> None:
+    most = "grasp_options: {max_grasps: 10}"  # the ten best are across the thin side
+    assert len(parts_of(with_brackets(tmp_path, f"box: [0.0005, 0.05, 0.07], {most}"))[0].grasps) == 10
+
+
 def test_listed_grasps_are_refused_at_their_entry(tmp_path: Path) -> None:
     down = mg.pose([0, 0, 0.02], rpy=[0, np.pi / 2, 0])
     xyz, rpy = [0.0, 0.0, 0.02], [0.0, 1.5707963, 0.0]

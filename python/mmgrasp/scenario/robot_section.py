@@ -405,7 +405,7 @@ def _check_finger_travel(node: Node, robot: Robot, hand: Hand) -> None:
                 f"{link} moves {abs(way):.4g} m along closing between closed and open: must be half of max_opening, "
                 f"{hand.max_opening / 2:.4g} m, so that both fingers meet the part at once"
             )
-    if len(ways) > 1 and abs(sum(np.sign(list(ways.values())))) == len(ways):
+    if len(ways) > 1 and len({way > 0 for way in ways.values()}) == 1:
         node.fail(f"{' and '.join(ways)} move the same way along closing: fingers must move apart as they open")
 
 

@@ -71,15 +71,10 @@ class ScanReader:
     """Reads the key `scan` of one tray after another; `rest` is what the maps hold beside their parts."""
 
     def __init__(
-        self,
-        closing: ClosingHand,
-        scene: list[LinkShape],
-        find: Callable[[Node], Path],
-        progress: Progress,
+        self, closing: ClosingHand, scene: list[LinkShape], find: Callable[[Node], Path], progress: Progress
     ) -> None:
         """`scene`: the typed obstacles in the world, which rendered frames show too; `find`: file that a node names."""
-        self._closing, self._gripper, self._scene = closing, closing.hand, scene
-        self._find, self._progress = find, progress
+        self._closing, self._scene, self._find, self._progress = closing, scene, find, progress
         self._maps: dict[Path, _LoadedMap] = {}
 
     def read(
@@ -210,13 +205,13 @@ class ScanReader:
     ) -> Part:
         given = {"samples": SAMPLES, "max_grasps": MOST_GRASPS} | options
         table, room = float(T_world_part[2, 3]), thing.bounds + [[-_ROOM], [_ROOM]]
-        found = _core.synthesize_grasps(made.sdf, self._gripper, table=table, object=room, **given)
+        found = _core.synthesize_grasps(made.sdf, self._closing.hand, table=table, object=room, **given)
         if found.outcome == Outcome.stopped:
             raise KeyboardInterrupt
         grasps = []
         for grasp in found.grasps:
             T = np.linalg.inv(T_world_part) @ grasp.T_object_hand
-            between = width_between(shapes, T, self._gripper)
+            between = width_between(shapes, T, self._closing.hand)
             if between is not None and abs(between - grasp.opening) <= _WIDTH_PLAY:
                 grasps.append(Grasp(T, grasp.opening, quality=grasp.quality))
         wide, rated = found.counts["too_wide"], len(grasps)

@@ -23,7 +23,6 @@ from .tray_body import BODY_KEYS, STEEPEST, WALL, TrayBody, read_tray_body, tilt
 
 MOST_PARTS = 1000  # in one tray
 MOST_HEADINGS = 360  # of one tray
-_MOST_GRASPS = 1_000_000  # that the sampler draws
 LARGEST_TRAY = 100.0  # [m]
 GAP = 0.001  # parts rest this far above the floor, so that nothing touches at rest [m]
 
@@ -70,10 +69,11 @@ def read_part_types(node: Node, closing: ClosingHand, progress: Progress = None)
             continue
         options = _grasp_options(entry)
         if "grasps" in entry:
-            grasps, too_wide = _listed_grasps(entry["grasps"], gripper)
+            listed, too_wide = _listed_grasps(entry["grasps"], gripper)
+            grasps = [grasp for _, grasp in listed]
             _check_they_hold(entry["grasps"], name, shapes, grasps, gripper)
-            _check_openings(entry["grasps"], name, shapes, gripper)
-            _check_fingers_meet(entry["grasps"], name, shapes, closing)
+            _check_openings(listed, name, shapes, gripper)
+            _check_fingers_meet(listed, name, shapes, closing)
             types[name] = PartType(shapes, grasps, too_wide, entry, mass)
         else:
             types[name] = _sampled_type(shapes, entry, mass, closing, options, tell)
@@ -88,16 +88,18 @@ def _sampled_type(
     options: dict[str, Any],
     progress: Progress,
 ) -> PartType:
+    def draw(asked: dict[str, Any]) -> tuple[list[Grasp], list[Grasp], int]:
+        drawn, too_wide = _core._sample_grasps(shapes, closing.hand, progress=progress, **asked)
+        return drawn, closing.held(shapes, drawn), too_wide
+
+    drawn, grasps, too_wide = draw(options)
     most = options.get("max_grasps", _core._grasp_option_table()["max_grasps"][0])
-    drawn, too_wide = _core._sample_grasps(shapes, closing.hand, progress=progress, **options)
-    grasps = closing.held(shapes, drawn)
     if len(grasps) < len(drawn) == most:  # There may be others in their place.
-        more = {**options, "max_grasps": min(8 * most, _MOST_GRASPS)}
-        drawn, too_wide = _core._sample_grasps(shapes, closing.hand, progress=progress, **more)
-        grasps = closing.held(shapes, drawn)[:most]
+        bound = int(_core._grasp_option_bounds()["max_grasps"][1])
+        drawn, grasps, too_wide = draw({**options, "max_grasps": min(8 * most, bound)})
     return PartType(
         shapes,
-        grasps,
+        grasps[:most],
         too_wide,
         entry,
         mass,
@@ -130,8 +132,12 @@ def _any_gripper() -> Hand:
     return Hand("tool", approach=[1, 0, 0], closing=[0, 1, 0], max_opening=0.1, finger_depth=0.03, finger_width=0.02)
 
 
-def _listed_grasps(node: Node, gripper: Hand) -> tuple[list[Grasp], int]:
-    grasps, too_wide = [], 0
+Listed = list[tuple[Node, Grasp]]
+"""Listed grasps that the gripper opens wide enough for, and where they stand."""
+
+
+def _listed_grasps(node: Node, gripper: Hand) -> tuple[Listed, int]:
+    listed, too_wide = [], 0
     for entry in node.elements():
         entry.mapping("pose opening", "quality")
         opening = entry["opening"].number(least=0)
@@ -139,8 +145,8 @@ def _listed_grasps(node: Node, gripper: Hand) -> tuple[list[Grasp], int]:
             too_wide += 1
             continue
         quality = entry["quality"].number(least=0) if "quality" in entry else 1.0
-        grasps.append(Grasp(entry["pose"].pose(), opening, quality=quality))
-    return grasps, too_wide
+        listed.append((entry, Grasp(entry["pose"].pose(), opening, quality=quality)))
+    return listed, too_wide
 
 
 def _check_they_hold(node: Node, name: str, shapes: list[LinkShape], grasps: list[Grasp], gripper: Hand) -> None:
@@ -163,25 +169,21 @@ def _check_they_hold(node: Node, name: str, shapes: list[LinkShape], grasps: lis
         )
 
 
-def _check_openings(node: Node, name: str, shapes: list[LinkShape], gripper: Hand) -> None:
+def _check_openings(listed: Listed, name: str, shapes: list[LinkShape], gripper: Hand) -> None:
     """Refuses grasps whose pads meet the part otherwise than their opening says, by the rule of `verify`."""
     if not (gripper.finger_depth > 0 and gripper.finger_width > 0):
         return
-    for entry in node.elements():
-        opening = entry["opening"].number(least=0)
-        if opening > gripper.max_opening:
-            continue  # left out as too wide
-        unlike = checks.pads_unlike_grasp(gripper, shapes, checks.CheckedGrasp(entry["pose"].pose(), opening))
+    for entry, grasp in listed:
+        checked = checks.CheckedGrasp(grasp.T_object_hand, grasp.opening)
+        unlike = checks.pads_unlike_grasp(gripper, shapes, checked)
         if unlike:
             entry["opening"].fail(f"does not hold part type {name}: {unlike}")
 
 
-def _check_fingers_meet(node: Node, name: str, shapes: list[LinkShape], closing: ClosingHand) -> None:
+def _check_fingers_meet(listed: Listed, name: str, shapes: list[LinkShape], closing: ClosingHand) -> None:
     """Refuses grasps at which the closing fingers do not meet the part, by the rule of `verify`."""
-    listed = [(entry, Grasp(entry["pose"].pose(), entry["opening"].number(least=0))) for entry in node.elements()]
-    fitting = [(entry, grasp) for entry, grasp in listed if grasp.opening <= closing.hand.max_opening]
-    meet = closing.meets(shapes, [grasp for _, grasp in fitting])
-    for (entry, _), meets in zip(fitting, meet, strict=True):
+    meet = closing.meets(shapes, [grasp for _, grasp in listed])
+    for (entry, _), meets in zip(listed, meet, strict=True):
         if not meets:
             entry.fail(
                 f"does not hold part type {name}: fewer than two finger links of the gripper meet it, closing from its "
@@ -426,7 +428,7 @@ def _check_graspable(name: str, kind: PartType, grasps: list[Grasp], gripper: Ha
         return
     if kind.why_none:
         kind.node.fail(f"part {name} has no grasp: {kind.why_none}")
-    _refuse_at_option(name, kind, gripper)
+    _refuse_at_option(name, kind)
     if kind.not_met:
         kind.node.fail(
             f"part {name} has no grasp: in none of {kind.not_met} do two finger links of the gripper meet it, closing from its "
@@ -442,12 +444,16 @@ def _check_graspable(name: str, kind: PartType, grasps: list[Grasp], gripper: Ha
     kind.node.fail(f"part {name} has no grasp: no two opposite surfaces were found for the gripper")
 
 
-def _refuse_at_option(name: str, kind: PartType, gripper: Hand) -> None:
+def _refuse_at_option(name: str, kind: PartType) -> None:
     """Fails at the first option of the sampler without which the part would have grasps, or at all of them together."""
 
+    closing = kind.closing
+    if closing is None:
+        return
+
     def count_with(options: dict[str, Any]) -> int:
-        drawn, _ = _core._sample_grasps(kind.shapes, gripper, progress=kind.progress, **options)
-        return len(drawn if kind.closing is None else kind.closing.held(kind.shapes, drawn))
+        drawn, _ = _core._sample_grasps(kind.shapes, closing.hand, progress=kind.progress, **options)
+        return len(closing.held(kind.shapes, drawn))
 
     for key in kind.grasp_options:
         count = count_with({other: value for other, value in kind.grasp_options.items() if other != key})

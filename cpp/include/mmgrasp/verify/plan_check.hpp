@@ -114,8 +114,8 @@ struct CheckedPads {
   double max_opening, finger_depth, finger_width, clearance;
 };
 
-/// Down to which opening fingers may close to meet a part at a grasp of this width [m]: 10 mm below it, or a quarter of
-/// it, for collision shapes may stand back from the pads that the width is meant for.
+/// Down to which opening fingers may close to meet a part at a grasp of this width [m]: 10 mm below it or a quarter of
+/// it, whichever is more, for collision shapes may stand back from the pads that the width is meant for.
 MMGRASP_EXPORT double narrowest_grip(double width);
 
 /// What is wrong with the seal of the cups at the grasp, which face along `approach` (unit, tool frame): the rims of

@@ -110,10 +110,8 @@ class PlyReader {
   void end_entry() {
     const std::string_view more = words_.next_in_line();
     if (!more.empty()) words_.fail("'" + std::string(more.substr(0, 40)) + "' is more than the line may say");
-    const std::size_t end = words_.position();
-    const std::size_t before = end > 0 ? content_.rfind('\n', end - 1) : std::string_view::npos;
-    std::string_view line = content_.substr(before == std::string_view::npos ? 0 : before + 1);
-    line = line.substr(0, line.find('\n'));
+    const std::string_view until = content_.substr(0, words_.position());
+    std::string_view line = until.substr(until.rfind('\n') + 1);  // npos + 1 is 0
     if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
     const auto is_control = [](char c) { return static_cast<unsigned char>(c) < ' ' && c != '\t'; };
     if (std::any_of(line.begin(), line.end(), is_control)) words_.fail("a control character in the header");

@@ -8,6 +8,7 @@
 #include "mmgrasp/collision/checker.hpp"
 #include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/verify/plan_check.hpp"
 #include "task/problem/scene.hpp"
 
@@ -16,7 +17,6 @@ namespace {
 
 constexpr int kSteps = 20;
 constexpr std::size_t kMostKept = 64;
-constexpr double kMostTolerance = 1;  // [m]
 constexpr char kPart[] = "part";
 
 /// The hand at the part, which lies at the world's origin; whatever carries the hand stands where it may.
@@ -85,8 +85,7 @@ void check_grasps(const JointGroup& arm, const Hand& hand, const std::vector<Gra
   require(arm.robot().link_index(hand.tool_link) == arm.tip_link(), "hand.tool_link", "'" + hand.tool_link + "'",
           "must be the arm's tip");
   for (const std::string& finger : hand.finger_links) arm.robot().link_index(finger);  // says which there is none of
-  require(mesh_tolerance >= 0 && mesh_tolerance <= kMostTolerance, "mesh_tolerance", mesh_tolerance,
-          "must be in [0, 1] [m]");
+  require_not_negative(mesh_tolerance, "mesh_tolerance");
   for (std::size_t i = 0; i < grasps.size(); ++i) {
     const double opening = grasps[i].opening;
     require(opening >= 0 && opening <= hand.max_opening, "grasps[" + std::to_string(i) + "].opening", opening,

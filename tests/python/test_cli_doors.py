@@ -93,6 +93,9 @@ def test_verify_says_what_it_compared_with(
     assert "the scenario stored in it (not compared with a file)" in capfd.readouterr().out.splitlines()[-1]
     assert main(["verify", str(plan), "--samples", "20", "--scenario", str(small_path)]) == 0
     assert capfd.readouterr().out.splitlines()[-1].endswith(f"checked against {small_path}")
+    plan.write_text(json.dumps({**small_plan_dict, "outcome": "not_found"}))
+    assert main(["verify", str(plan), "--scenario", str(small_path)]) == 1
+    assert capfd.readouterr().out.splitlines()[-1].endswith("1 fault; checked against nothing")
 
 
 @pytest.mark.parametrize("png", ["/dev/full", "{}/no/such/\0", "{}"])

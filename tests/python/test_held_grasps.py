@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -110,4 +111,7 @@ def test_grippers_whose_fingers_do_not_move_apart_are_refused(tmp_path: Path) ->
     assert joints not in (swapped, still)
     assert "move the same way along closing" in refusal(text.replace(joints, swapped, 1))
     assert "must differ from closed" in refusal(text.replace(joints, still, 1))
+    both = re.search(r"joints:\n(    - .*\n){2}", text)
+    assert both
+    assert "joints: must name a joint" in refusal(text.replace(both[0], "joints: []\n"))
     assert "moves 0 m along closing" in refusal(text.replace("closing: [0, 1, 0]", "closing: [0, 0, 1]"))

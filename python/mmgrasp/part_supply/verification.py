@@ -36,7 +36,7 @@ class PlanVerdict:
     allowed_collisions: list[tuple[str, str]] = field(default_factory=list)
     """Pairs that the plan's scenario lets touch, so that nobody checked them."""
     compared_with: str = "the scenario stored in it"
-    """The scenario file, or the one stored in the plan when none was given."""
+    """The scenario file, or the one stored in the plan when none was given; "nothing" where there is no plan."""
     lower_bound: int = 0
     """Fewer stops are proven not to be enough; below `minimal_stops` the least number is not decided."""
     search_cut: bool = False
@@ -87,7 +87,8 @@ def verify_plan(
     check_form(root)
     outcome = root["outcome"].string()
     if outcome != "solved":
-        return PlanVerdict([checks.Fault("no-plan", "outcome", f"the file holds no plan: its outcome is {outcome}")])
+        no_plan = checks.Fault("no-plan", "outcome", f"the file holds no plan: its outcome is {outcome}")
+        return PlanVerdict([no_plan], compared_with="nothing")
     with root["scenario"].blamed():
         to_check = plan_to_check(root)
         faults = check_consistency(root.raw) + check_scans(root)

@@ -1,9 +1,8 @@
-"""The sections `robot`, `gripper` and `place_region` of a scenario: one robot composed of files, mounts, frames and a bin."""
+"""The sections `robot` and `place_region` of a scenario: one robot composed of files, mounts, frames and a bin."""
 
 from __future__ import annotations
 
 import importlib.util
-import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -15,7 +14,6 @@ from .._argument_errors import checked
 from .._core import (
     Box,
     Hand,
-    HandJoint,
     InvalidInput,
     JointGroup,
     LinkShape,
@@ -26,8 +24,9 @@ from .._files import ASSETS, shipped
 from .._progress import Progress
 from ..documents.reading import RENAMED, Node, near_miss, read_yaml
 from .closed_fingers import fingers_may_meet, held_links_may_meet
+from .gripper_section import read_hand
+from .robot_names import check_link, joint_value
 from .shapes import read_shapes
-from .suction_section import read_cups
 from .wheels import limits_of_wheels
 
 BASE_LIMITS = "linear_velocity angular_velocity linear_acceleration angular_acceleration workspace wheel_velocity wheel_separation wheelbase"
@@ -151,8 +150,8 @@ def read_gripper(source: str) -> Hand:
     """
     sections = _sections_of(source)
     robot = compose(sections.robot.mapping("urdf tool_link", f"group home {ROBOT_KEYS}"))
-    _link(robot, sections.robot["tool_link"])
-    return _read_gripper(sections.gripper, robot, sections.robot["tool_link"].string())
+    check_link(robot, sections.robot["tool_link"])
+    return read_hand(sections.gripper, robot, sections.robot["tool_link"].string())
 
 
 @checked
@@ -175,12 +174,12 @@ def read_setup(sections: RobotSections, progress: Progress = None) -> RobotSetup
         node.fail("a part-supply round needs a place_region, which this robot's profile does not have")
     robot = compose(node)
     tool_link = node["tool_link"].string()
-    _link(robot, node["tool_link"])
-    gripper = _read_gripper(sections.gripper, robot, tool_link)
+    check_link(robot, node["tool_link"])
+    gripper = read_hand(sections.gripper, robot, tool_link)
     robot, bin_pose = _add_bin(robot, sections.place_region)
     robot = fingers_may_meet(_core.with_sampled_pairs(robot, progress=progress), gripper)
 
-    other = {name: _joint_value(robot, name, value) for name, value in _named_numbers(node, "joints")}
+    other = {name: joint_value(robot, name, value) for name, value in _named_numbers(node, "joints")}
     closed = gripper.joint_values(0.0)
     group = _read_group(robot, node["group"], tool_link)
     arm = _arm_of(robot, node["group"], group)
@@ -220,10 +219,10 @@ def _arm_setup(node: Node, hand: Node, progress: Progress) -> ArmSetup:
     node.mapping("urdf group tool_link", ROBOT_KEYS)
     robot = compose(node)
     tool_link = node["tool_link"].string()
-    _link(robot, node["tool_link"])
-    gripper = _read_gripper(hand, robot, tool_link)
+    check_link(robot, node["tool_link"])
+    gripper = read_hand(hand, robot, tool_link)
     robot = fingers_may_meet(_core.with_sampled_pairs(robot, progress=progress), gripper)
-    other = {name: _joint_value(robot, name, value) for name, value in _named_numbers(node, "joints")}
+    other = {name: joint_value(robot, name, value) for name, value in _named_numbers(node, "joints")}
     arm = _arm_of(robot, node["group"], _read_group(robot, node["group"], tool_link))
     return ArmSetup(robot, arm.with_reference({**other, **gripper.joint_values(0.0)}), gripper)
 
@@ -245,14 +244,14 @@ def compose(node: Node) -> Robot:
     for mount in node["mount"].elements() if "mount" in node else []:
         mount.mapping("urdf parent_link", "srdf packages xacro_args mesh_tolerance pose prefix")
         other = _load(mount, "fixed", {})
-        _link(robot, mount["parent_link"])
+        check_link(robot, mount["parent_link"])
         T = mount["pose"].pose() if "pose" in mount else np.eye(4)
         prefix = mount["prefix"].string() if "prefix" in mount else ""
         with mount.blamed():
             robot = robot.mount(other, mount["parent_link"].string(), T, prefix)
     for frame in node["frames"].elements() if "frames" in node else []:
         frame.mapping("name parent", "pose box cylinder sphere mesh shapes scale")
-        _link(robot, frame["parent"])
+        check_link(robot, frame["parent"])
         if frame["name"].label() in (*robot.links, BIN_LINK):
             frame["name"].fail("the robot has a link of this name already")
         T = frame["pose"].pose() if "pose" in frame else np.eye(4)
@@ -280,24 +279,8 @@ def _load(node: Node, base: str, limits: dict[str, float]) -> Robot:
     return Robot.load(urdf, srdf, packages, base, base_limits=limits, mesh_tolerance=tolerance, xacro_args=arguments)
 
 
-def _link(robot: Robot, node: Node) -> None:
-    if node.string() not in robot.links:
-        node.fail(f"the robot has no such link{near_miss(node.raw, robot.links)}")
-
-
 def _named_numbers(node: Node, key: str) -> list[tuple[str, Node]]:
     return list(node[key].items()) if key in node else []
-
-
-def _joint_value(robot: Robot, name: str, node: Node) -> float:
-    if name not in robot.joints:
-        node.fail(f"the robot has no movable joint {name}{near_miss(name, robot.joints)}")
-    value = node.number()
-    try:
-        robot.values({name: value})
-    except InvalidInput as error:
-        node.fail(str(error))
-    return value
 
 
 def _read_group(robot: Robot, node: Node, tool_link: str) -> dict[str, Any]:
@@ -308,7 +291,7 @@ def _read_group(robot: Robot, node: Node, tool_link: str) -> dict[str, Any]:
     node.mapping("base_link", "tip_link")
     for key in ("base_link", "tip_link"):
         if key in node:
-            _link(robot, node[key])
+            check_link(robot, node[key])
     return {"base_link": node["base_link"].string(), "tip": tool_link}
 
 
@@ -345,104 +328,10 @@ def _read_home(node: Node, arm: JointGroup) -> np.ndarray:
     return home
 
 
-def _read_gripper(node: Node, robot: Robot, tool_link: str) -> Hand:
-    payload = node["payload"].number(above=0) if "payload" in node else math.inf
-    if "suction" in node:
-        node.mapping("approach suction cup_links", "payload")
-        for link in node["cup_links"].elements():
-            _link(robot, link)
-        return read_cups(node, robot, tool_link, _axes(node)["approach"], payload)
-    if "from_robot" in node:
-        return _gripper_from_robot(node, robot, tool_link, payload)
-    node.mapping(
-        "approach closing max_opening finger_depth finger_width joints finger_links", "clearance closing_speed payload"
-    )
-    joints: list[HandJoint] = []
-    for joint in node["joints"].elements():
-        joint.mapping("name closed open")
-        name = joint["name"].string()
-        if name in [other.name for other in joints]:
-            joint["name"].fail("is listed twice")
-        closed, opened = (_joint_value(robot, name, joint[key]) for key in ("closed", "open"))
-        if closed == opened:
-            joint["open"].fail("must differ from closed: the joint would not move")
-        joints.append(HandJoint(name, closed, opened))
-    links = node["finger_links"].elements()
-    for link in links:
-        _link(robot, link)
-    if len({link.raw for link in links}) < max(2, len(links)):
-        node["finger_links"].fail("must be at least two links, each once: parts are held between them")
-    sizes: dict[str, Any] = {key: node[key].number(above=0) for key in ("max_opening", "finger_depth", "finger_width")}
-    if "clearance" in node:
-        sizes["clearance"] = node["clearance"].number(least=0)
-    axes = _axes(node)
-    with node.blamed():
-        hand = Hand(
-            tool_link,
-            approach=axes["approach"],
-            closing=axes["closing"],
-            joints=joints,
-            finger_links=[link.raw for link in links],
-            payload=payload,
-            **sizes,
-        )
-    _check_finger_travel(node["joints"], robot, hand)
-    return hand
-
-
-def _check_finger_travel(node: Node, robot: Robot, hand: Hand) -> None:
-    """Both fingers meet a part at once: those that slide go half of the opening along `closing`, apart as they open."""
-    ends = [robot.link_poses(hand.joint_values(opening)) for opening in (0.0, hand.max_opening)]
-    ways = {}
-    for link in hand.finger_links:
-        closed, opened = (np.linalg.inv(poses[hand.tool_link]) @ poses[link] for poses in ends)
-        moved = (opened - closed)[:3, 3]
-        if np.linalg.norm(moved) > 1e-9 and np.allclose(opened[:3, :3], closed[:3, :3], atol=1e-9):
-            ways[link] = hand.closing @ moved
-    for link, way in ways.items():
-        if abs(abs(way) - hand.max_opening / 2) > 1e-3:
-            node.fail(
-                f"{link} moves {abs(way):.4g} m along closing between closed and open: must be half of max_opening, "
-                f"{hand.max_opening / 2:.4g} m, so that both fingers meet the part at once"
-            )
-    if len(ways) > 1 and len({way > 0 for way in ways.values()}) == 1:
-        node.fail(f"{' and '.join(ways)} move the same way along closing: fingers must move apart as they open")
-
-
-def _axes(node: Node) -> dict[str, Any]:
-    """The axes `approach` and `closing` of the tool frame, as far as they are given."""
-    axes: dict[str, Any] = {}
-    for key in ("approach", "closing"):
-        if key not in node:
-            continue
-        axis = np.array(node[key].numbers(3))
-        if abs(np.linalg.norm(axis) - 1) > 1e-6:
-            node[key].fail("must be a unit axis of the tool frame")
-        axes[key] = axis
-    if len(axes) == 2 and abs(axes["approach"] @ axes["closing"]) > 1e-6:
-        node["closing"].fail("must be orthogonal to approach")
-    return axes
-
-
-def _gripper_from_robot(node: Node, robot: Robot, tool_link: str, payload: float) -> Hand:
-    """A hand measured on the robot's own shapes; what the section states goes first."""
-    source = node.mapping("from_robot", "approach closing clearance closing_speed payload")["from_robot"]
-    if source.raw is not True and not isinstance(source.raw, str):
-        source.fail("must be an SRDF end effector or group, or true: every joint below the tool frame's body")
-    stated = _axes(node)
-    if "clearance" in node:
-        stated["clearance"] = node["clearance"].number(least=0)
-    try:
-        hand = Hand.from_robot(robot, tool_link, group="" if source.raw is True else source.string(), **stated)
-    except InvalidInput as error:
-        node.fail(str(error))
-    return hand.with_payload(payload)
-
-
 def _add_bin(robot: Robot, node: Node) -> tuple[Robot, np.ndarray]:
     """The robot with the bin's solid box as a link; the link's frame is the middle of the box's top face."""
     node.mapping("parent pose size", "drop_height capacity")
-    _link(robot, node["parent"])
+    check_link(robot, node["parent"])
     size = node["size"].numbers(3, above=0)
     parent, T_parent_bin = node["parent"].string(), node["pose"].pose()
     box = LinkShape(Box(size), _core.pose([0, 0, -size[2] / 2]))

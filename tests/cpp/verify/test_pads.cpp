@@ -39,6 +39,14 @@ TEST(PadsUnlikeGrasp, FingersThatCloseAlikeMeetTheBlockOnBothSides) {
   EXPECT_EQ(unlike(block, 0.05, 0.002), "");
 }
 
+TEST(PadsUnlikeGrasp, ABlockBesideTheHandHasNoWidth) {
+  const std::vector<LinkShape> block{at(Box{{0.02, 0.02, 0.02}})};
+  CheckedGrasp beside;
+  beside.opening = 0.02;
+  beside.T_object_hand.translation().z() = 0.05;
+  EXPECT_NE(pads_unlike_grasp(kPads, block, beside).find("meet nothing of the part"), std::string::npos);
+}
+
 TEST(PadsUnlikeGrasp, AWedgeIsAsWideAsUnderTheWholePads) {
   // 2 cm wide in the hand's middle, and a quarter of the way wider on each side towards its thick end: at the pads'
   // ends, 2 cm from there, 3 cm.

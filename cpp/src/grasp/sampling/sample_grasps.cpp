@@ -21,7 +21,7 @@ namespace {
 
 using detail::ContactPair;
 using detail::ContactPairs;
-using detail::SampledGrasp;
+using detail::RankedCandidate;
 
 constexpr double kMostCandidates = 1e6;
 constexpr double kSamePlace = 1e-9;  // What differs by less is the same [m].
@@ -87,12 +87,17 @@ class Candidates {
  public:
   Candidates(const ContactPairs& pairs, const std::vector<LinkShape>& object, const Hand& hand,
              const GraspSamplerOptions& options)
-      : hand_(hand), options_(options), judge_(pairs, hand), far_face_(object) {
+      : hand_(hand), options_(options), pairs_(pairs.pairs), judge_(pairs, hand), far_face_(object) {
     if (pairs.surface) seats_.emplace(*pairs.surface, pairs.hull.get(), hand, options);
-    for (std::size_t i = 0; i < pairs.pairs.size(); ++i) add(static_cast<int>(i), pairs.pairs[i]);
+    for (std::size_t i = 0; i < pairs_.size(); ++i) add(static_cast<int>(i), pairs_[i]);
   }
 
-  const std::vector<SampledGrasp>& all() const { return candidates_; }
+  std::vector<Grasp> best(int most) const {
+    std::vector<Grasp> grasps;
+    for (const std::size_t i : detail::keep_spread(ranked_, most)) grasps.push_back(made(candidates_[i]));
+    return grasps;
+  }
+
   int too_wide() const { return too_wide_; }
 
  private:
@@ -173,31 +178,53 @@ class Candidates {
     return seated;
   }
 
+  /// Enough to make a grasp of: there are up to millions.
+  struct Candidate {
+    ContactPairProvenance provenance;
+    Eigen::Vector3d approach;
+    double standoff;                  // [m]
+    Eigen::Vector3d middle;           // Where the pads meet the part.
+    double width, alignment;
+  };
+
   /// The pads are alike, the arm is not: the hand turned by half a turn about the approach is a grasp of its own.
   void add_both_hands(ContactPairProvenance provenance, const ContactPair& pair, const Eigen::Vector3d& approach,
                       double standoff) {
+    Grasp judged;
+    judged.set_quality(judge_(pair, approach, standoff));
     for (const bool flipped : {false, true}) {
-      const Eigen::Vector3d closing = flipped ? -pair.axis : pair.axis;
-      SampledGrasp candidate;
-      Grasp& grasp = candidate.grasp;
-      grasp.T_object_hand.linear() = detail::align_axes(hand_.approach, hand_.closing, approach, closing);
-      grasp.T_object_hand.translation() = pair.middle - standoff * approach;
-      grasp.opening = pair.width;
-      grasp.set_quality(judge_(pair, approach, standoff));
       provenance.flipped = flipped;
-      grasp.provenance = provenance;
-      candidate.bin = 27 * detail::direction_bin(approach) + detail::direction_bin(closing);
-      candidates_.push_back(std::move(candidate));
+      candidates_.push_back({provenance, approach, standoff, pair.middle, pair.width, pair.alignment});
+      const Eigen::Vector3d closing = flipped ? -pair.axis : pair.axis;
+      ranked_.push_back({judged.quality, 27 * detail::direction_bin(approach) + detail::direction_bin(closing)});
     }
+  }
+
+  Grasp made(const Candidate& candidate) const {
+    detail::throw_if_interrupted();
+    ContactPair pair = pairs_[candidate.provenance.pair];
+    pair.middle = candidate.middle;
+    pair.width = candidate.width;
+    pair.alignment = candidate.alignment;
+    const Eigen::Vector3d closing = candidate.provenance.flipped ? -pair.axis : pair.axis;
+    Grasp grasp;
+    grasp.T_object_hand.linear() = detail::align_axes(hand_.approach, hand_.closing, candidate.approach, closing);
+    grasp.T_object_hand.translation() = pair.middle - candidate.standoff * candidate.approach;
+    grasp.opening = pair.width;
+    grasp.set_quality(judge_(pair, candidate.approach, candidate.standoff));
+    grasp.provenance = candidate.provenance;
+    return grasp;
   }
 
   const Hand& hand_;
   const GraspSamplerOptions& options_;
+  const std::vector<ContactPair>& pairs_;
   Judge judge_;
   detail::FarFace far_face_;
   std::optional<detail::PadSeats> seats_;
   std::set<std::array<long long, 9>> flush_;  // Places and axes of hands whose tips are flush.
-  std::vector<SampledGrasp> candidates_;
+  std::vector<Candidate> candidates_;
+  std::vector<RankedCandidate> ranked_;
   int too_wide_ = 0;
 };
 
@@ -237,7 +264,7 @@ SampledGrasps sample_grasps(const std::vector<LinkShape>& object, const Hand& ha
   if (!pairs) pairs = detail::surface_pairs(object, hand.max_opening, options);
 
   const Candidates candidates(*pairs, object, hand, options);
-  SampledGrasps sampled{detail::keep_spread(candidates.all(), options.max_grasps), candidates.too_wide()};
+  SampledGrasps sampled{candidates.best(options.max_grasps), candidates.too_wide()};
   sampled.tips_flush = count_flush(sampled.grasps);
   return sampled;
 }

@@ -51,7 +51,8 @@ class SuctionSampler {
     for (const SurfacePoint& place : places()) {
       for (int turn = 0; turn < options_.turns; ++turn) try_place(place, turn);
     }
-    sampled_.grasps = detail::keep_spread(candidates_, options_.max_grasps);
+    for (const std::size_t i : detail::keep_spread(ranked_, options_.max_grasps))
+      sampled_.grasps.push_back(std::move(found_[i]));
     return std::move(sampled_);
   }
 
@@ -146,12 +147,11 @@ class SuctionSampler {
   }
 
   void add(const Pose& T, int turn, double holding, double seal) {
-    detail::SampledGrasp candidate;
-    candidate.grasp.T_object_hand = T;
-    candidate.grasp.set_quality(
-        {{"holding", std::clamp(holding, 0.0, 1.0), 0.5}, {"seal", std::clamp(seal, 0.0, 1.0), 0.5}});
-    candidate.bin = detail::direction_bin(T.linear() * hand_.approach) * options_.turns + turn;
-    candidates_.push_back(std::move(candidate));
+    Grasp grasp;
+    grasp.T_object_hand = T;
+    grasp.set_quality({{"holding", std::clamp(holding, 0.0, 1.0), 0.5}, {"seal", std::clamp(seal, 0.0, 1.0), 0.5}});
+    ranked_.push_back({grasp.quality, detail::direction_bin(T.linear() * hand_.approach) * options_.turns + turn});
+    found_.push_back(std::move(grasp));
   }
 
   detail::JoinedSurface surface_;
@@ -161,7 +161,8 @@ class SuctionSampler {
   double mass_;
   const SuctionSamplerOptions& options_;
   SampledSuctionGrasps sampled_;
-  std::vector<detail::SampledGrasp> candidates_;
+  std::vector<Grasp> found_;
+  std::vector<detail::RankedCandidate> ranked_;
 };
 
 }  // namespace

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
+#include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 
 namespace mmgrasp::detail {
@@ -24,26 +26,25 @@ int direction_bin(const Eigen::Vector3d& direction) {
   return bin;
 }
 
-std::vector<Grasp> keep_spread(const std::vector<SampledGrasp>& candidates, int most) {
+std::vector<std::size_t> keep_spread(const std::vector<RankedCandidate>& candidates, int most) {
   std::vector<std::size_t> order(candidates.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return candidates[a].grasp.quality > candidates[b].grasp.quality;
-  });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return candidates[a].quality > candidates[b].quality; });
+  throw_if_interrupted();
   std::map<int, int> seen;
   std::vector<int> rank(candidates.size());  // place of a candidate among those of its bin
   for (const std::size_t i : order) rank[i] = seen[candidates[i].bin]++;
 
-  std::vector<std::size_t> kept = order;
+  std::vector<std::size_t> kept = std::move(order);
   std::stable_sort(kept.begin(), kept.end(), [&](std::size_t a, std::size_t b) { return rank[a] < rank[b]; });
+  throw_if_interrupted();
   kept.resize(std::min<std::size_t>(kept.size(), most));
   std::sort(kept.begin(), kept.end(), [&](std::size_t a, std::size_t b) {
-    const double qa = candidates[a].grasp.quality, qb = candidates[b].grasp.quality;
+    const double qa = candidates[a].quality, qb = candidates[b].quality;
     return qa != qb ? qa > qb : a < b;
   });
-  std::vector<Grasp> grasps;
-  for (const std::size_t i : kept) grasps.push_back(candidates[i].grasp);
-  return grasps;
+  return kept;
 }
 
 }  // namespace mmgrasp::detail

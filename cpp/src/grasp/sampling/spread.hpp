@@ -1,15 +1,14 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <vector>
-
-#include "mmgrasp/grasp/grasp.hpp"
 
 namespace mmgrasp::detail {
 
-/// A grasp to choose from.
-struct SampledGrasp {
-  Grasp grasp;
+/// What is known of a grasp while others are still sampled: it is made when it is kept.
+struct RankedCandidate {
+  double quality = 0;
   int bin = 0;  ///< Its direction, coarsely: grasps of one bin are alike.
 };
 
@@ -20,7 +19,8 @@ Eigen::Matrix3d align_axes(const Eigen::Vector3d& from_a, const Eigen::Vector3d&
 /// One of the 26 directions to a cube's face middles, edges and corners, nearest to a unit vector.
 int direction_bin(const Eigen::Vector3d& direction);
 
-/// The best of every bin first, then the second best of every bin, and so on, up to `most`; sorted by quality.
-std::vector<Grasp> keep_spread(const std::vector<SampledGrasp>& candidates, int most);
+/// The best of every bin first, then the second best of every bin, and so on, up to `most`: which they are, sorted by
+/// quality.
+std::vector<std::size_t> keep_spread(const std::vector<RankedCandidate>& candidates, int most);
 
 }  // namespace mmgrasp::detail

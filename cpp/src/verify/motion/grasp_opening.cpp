@@ -133,6 +133,7 @@ std::string pads_unlike_grasp(const CheckedPads& pads, const std::vector<LinkSha
     other = pad.stops_at(-1, widest);
     if (std::max(one, other) > widest) return size + " have no room beside the part, however far the hand opens";
   }
+  if (one + other <= 0) return size + " meet nothing of the part between them";
   if (std::abs(one + other - grasp.opening) <= 2 * play)
     return size + " meet the part " + detail::text(0.5 * std::abs(one - other)) +
            " m beside the middle of the hand, whose fingers close alike";

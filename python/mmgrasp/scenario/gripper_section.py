@@ -1,0 +1,110 @@
+"""The section `gripper` of a scenario."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from .._core import Hand, HandJoint, InvalidInput, Robot
+from ..documents.reading import Node
+from .robot_names import check_link, joint_value
+from .suction_section import read_cups
+
+
+def read_hand(node: Node, robot: Robot, tool_link: str) -> Hand:
+    """The hand of the section `gripper`: fingers, suction cups, or what is found on the robot."""
+    payload = node["payload"].number(above=0) if "payload" in node else math.inf
+    if "suction" in node:
+        node.mapping("approach suction cup_links", "payload")
+        for link in node["cup_links"].elements():
+            check_link(robot, link)
+        return read_cups(node, robot, tool_link, _axes(node)["approach"], payload)
+    if "from_robot" in node:
+        return _gripper_from_robot(node, robot, tool_link, payload)
+    node.mapping(
+        "approach closing max_opening finger_depth finger_width joints finger_links", "clearance closing_speed payload"
+    )
+    joints: list[HandJoint] = []
+    for joint in node["joints"].elements():
+        joint.mapping("name closed open")
+        name = joint["name"].string()
+        if name in [other.name for other in joints]:
+            joint["name"].fail("is listed twice")
+        closed, opened = (joint_value(robot, name, joint[key]) for key in ("closed", "open"))
+        if closed == opened:
+            joint["open"].fail("must differ from closed: the joint would not move")
+        joints.append(HandJoint(name, closed, opened))
+    if not joints:
+        node["joints"].fail("must name a joint: the fingers would not move")
+    links = node["finger_links"].elements()
+    for link in links:
+        check_link(robot, link)
+    if len({link.raw for link in links}) < max(2, len(links)):
+        node["finger_links"].fail("must be at least two links, each once: parts are held between them")
+    sizes: dict[str, Any] = {key: node[key].number(above=0) for key in ("max_opening", "finger_depth", "finger_width")}
+    if "clearance" in node:
+        sizes["clearance"] = node["clearance"].number(least=0)
+    axes = _axes(node)
+    with node.blamed():
+        hand = Hand(
+            tool_link,
+            approach=axes["approach"],
+            closing=axes["closing"],
+            joints=joints,
+            finger_links=[link.raw for link in links],
+            payload=payload,
+            **sizes,
+        )
+    _check_finger_travel(node["joints"], robot, hand)
+    return hand
+
+
+def _check_finger_travel(node: Node, robot: Robot, hand: Hand) -> None:
+    """Both fingers meet a part at once: those that slide go half of the opening along `closing`, apart as they open."""
+    ends = [robot.link_poses(hand.joint_values(opening)) for opening in (0.0, hand.max_opening)]
+    ways = {}
+    for link in hand.finger_links:
+        closed, opened = (np.linalg.inv(poses[hand.tool_link]) @ poses[link] for poses in ends)
+        moved = (opened - closed)[:3, 3]
+        if np.linalg.norm(moved) > 1e-9 and np.allclose(opened[:3, :3], closed[:3, :3], atol=1e-9):
+            ways[link] = hand.closing @ moved
+    for link, way in ways.items():
+        if abs(abs(way) - hand.max_opening / 2) > 1e-3:
+            node.fail(
+                f"{link} moves {abs(way):.4g} m along closing between closed and open: must be half of max_opening, "
+                f"{hand.max_opening / 2:.4g} m, so that both fingers meet the part at once"
+            )
+    if len(ways) > 1 and len({way > 0 for way in ways.values()}) == 1:
+        node.fail(f"{' and '.join(ways)} move the same way along closing: fingers must move apart as they open")
+
+
+def _axes(node: Node) -> dict[str, Any]:
+    """The axes `approach` and `closing` of the tool frame, as far as they are given."""
+    axes: dict[str, Any] = {}
+    for key in ("approach", "closing"):
+        if key not in node:
+            continue
+        axis = np.array(node[key].numbers(3))
+        if abs(np.linalg.norm(axis) - 1) > 1e-6:
+            node[key].fail("must be a unit axis of the tool frame")
+        axes[key] = axis
+    if len(axes) == 2 and abs(axes["approach"] @ axes["closing"]) > 1e-6:
+        node["closing"].fail("must be orthogonal to approach")
+    return axes
+
+
+def _gripper_from_robot(node: Node, robot: Robot, tool_link: str, payload: float) -> Hand:
+    """A hand measured on the robot's own shapes; what the section states goes first."""
+    source = node.mapping("from_robot", "approach closing clearance closing_speed payload")["from_robot"]
+    if source.raw is not True and not isinstance(source.raw, str):
+        source.fail("must be an SRDF end effector or group, or true: every joint below the tool frame's body")
+    stated = _axes(node)
+    if "clearance" in node:
+        stated["clearance"] = node["clearance"].number(least=0)
+    try:
+        hand = Hand.from_robot(robot, tool_link, group="" if source.raw is True else source.string(), **stated)
+    except InvalidInput as error:
+        node.fail(str(error))
+    return hand.with_payload(payload)

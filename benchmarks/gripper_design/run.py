@@ -1,4 +1,4 @@
-"""Segments of 50 composed parts against the primitives they were made of: share of faces right, and seconds for the call alone: processor time, and the
+"""Segments of 50 composed parts against the primitives they were made of: share of faces right, widths offered, and seconds for the call alone: processor time, and the
 clock's, which the machine's load (stated) adds to.
 
     python benchmarks/gripper_design/run.py [--parts 50] [--triangles 0] [--write]
@@ -25,7 +25,7 @@ import mmgrasp as mg
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests" / "python"))
 from composed_parts import composed_parts, faces_right
-from test_segment_mesh import EDGE, as_mesh
+from test_segment_mesh import EDGE, as_mesh, widths_offered
 
 
 def cgal() -> Any:
@@ -51,6 +51,8 @@ parser.add_argument("--write", action="store_true", help="store the table")
 arguments = parser.parse_args()
 names, shares, seconds, clock, peer = [], [], [], [], cgal()
 peer_shares, peer_seconds = [], []
+widths_off: list[list[float]] = []  # by part: of each width offered, from the nearest of the primitive's [mm]
+held: list[tuple[int, int]] = []  # by part: primitives of which a width is offered, and how many there are
 print(f"load {os.getloadavg()[0]:.2f} on {os.cpu_count()} cores", flush=True)
 with tempfile.TemporaryDirectory() as folder:
     for k, (part, noise) in enumerate(composed_parts(arguments.parts)):
@@ -63,6 +65,14 @@ with tempfile.TemporaryDirectory() as folder:
         clock.append(time.perf_counter() - began)
         names.append(part.name)
         shares.append(faces_right(truth, found.labels))
+        off, offering = [], set()
+        for segment, widths in widths_offered(mesh, found):
+            own = truth[segment.faces]
+            primitive = int(np.bincount(own[own >= 0]).argmax())
+            off += [min(abs(w - true) for true in part.widths[primitive]) for w in widths if part.widths[primitive]]
+            offering |= {primitive} if widths else set()
+        widths_off.append(off)
+        held.append((len(offering), len(np.unique(truth[truth >= 0]))))
         beside = ""
         if peer is not None:
             surface = peer.Polyhedron()
@@ -107,14 +117,18 @@ def page() -> str:
         + f"{sum(s < 3 for s in seconds)} of {len(seconds)} take less than 3 s of processor time, "
         + f"{sum(s < 3 for s in clock)} by the clock.",
         "",
-        "| part | parts | right, least [%] | right, mean [%] | processor time, median [s] | at most [s] | by the clock, median [s] | at most [s] |",
-        "|---|---|---|---|---|---|---|---|",
+        f"Widths: {sum(map(len, widths_off))} offered, {sum(w < 0.1 for part in widths_off for w in part)} of them within 0.1 mm of the primitive's, "
+        f"{max(w for part in widths_off for w in part):.2f} mm off at most; of {sum(n for _, n in held)} primitives {sum(n for n, _ in held)} are offered.",
+        "",
+        "| part | parts | right, least [%] | right, mean [%] | widths off, at most [mm] | primitives offered | processor time, median [s] | at most [s] | by the clock, median [s] | at most [s] |",
+        "|---|---|---|---|---|---|---|---|---|---|",
     ]
     for name in dict.fromkeys(names):
         of = [i for i, other in enumerate(names) if other == name]
         right, spent, passed = (np.array(values)[of] for values in (shares, seconds, clock))
         lines.append(
-            f"| {name} | {len(of)} | {100 * right.min():.1f} | {100 * right.mean():.1f} | {np.median(spent):.2f} | "
+            f"| {name} | {len(of)} | {100 * right.min():.1f} | {100 * right.mean():.1f} | "
+            f"{max((w for i in of for w in widths_off[i]), default=0):.2f} | {sum(held[i][0] for i in of)} of {sum(held[i][1] for i in of)} | {np.median(spent):.2f} | "
             f"{spent.max():.2f} | {np.median(passed):.2f} | {passed.max():.2f} |"
         )
     return "\n".join(lines) + "\n"

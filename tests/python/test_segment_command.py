@@ -38,7 +38,7 @@ def test_segments_of_a_box(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -
     assert segment["primitive"] == "box" and segment["name"] == "box_1"
     assert sorted(w["width"] for w in segment["widths"]) == pytest.approx([0.01, 0.02, 0.03], abs=1e-8)
     assert segment["segment"] == 0 and written["labels"] == [0] * 12 and written["notes"] == []
-    for picture in ("segments.png", "diameters.png"):
+    for picture in ("segments.png", "primitives.png", "diameters.png"):
         assert (tmp_path / "out" / picture).read_bytes().startswith(b"\x89PNG")
 
 

@@ -115,7 +115,7 @@ std::string finger_name(int i) {
 std::string finger_urdf(const Gripper& g, int i) {
   const double turn = detail::kTwoPi * i / g.fingers, closed = g.min_opening / 2;
   std::string out = "  <link name=\"" + finger_name(i) + "\">\n" + inertial(finger_inertia(g)) +
-                    both_shapes("<mesh filename=\"finger.stl\"/>", 0) + "  </link>\n";
+                    both_shapes("<mesh filename=\"finger.stl\" scale=\"0.001 0.001 0.001\"/>", 0) + "  </link>\n";
   out += "  <joint name=\"" + finger_name(i) +
          "_joint\" type=\"prismatic\">\n    <parent link=\"base\"/>\n    <child link=\"" + finger_name(i) +
          "\"/>\n    <origin xyz=\"" + vector_text(closed * std::cos(turn), closed * std::sin(turn), g.palm_height) +
@@ -168,14 +168,16 @@ void append(std::string& out, T value) {
   out.append(bytes, sizeof value);
 }
 
-std::string binary_stl(const TriangleMesh& mesh) {
+/// In millimetres, which programs for printers take an STL to be in.
+std::string stl_to_print(const TriangleMesh& mesh) {
   std::string out(80, ' ');
   append(out, static_cast<std::uint32_t>(mesh.triangles.size()));
   for (const auto& t : mesh.triangles) {
     const Eigen::Vector3d &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
     const Eigen::Vector3d normal = (b - a).cross(c - a).normalized();
     for (const Eigen::Vector3d* v : {&normal, &a, &b, &c}) {
-      for (int axis = 0; axis < 3; ++axis) append(out, static_cast<float>((*v)[axis]));
+      const double unit = v == &normal ? 1 : 1000;
+      for (int axis = 0; axis < 3; ++axis) append(out, static_cast<float>(unit * (*v)[axis]));
     }
     append(out, std::uint16_t{0});
   }
@@ -249,7 +251,7 @@ std::shared_ptr<const TriangleMesh> Gripper::finger_mesh() const {
 
 std::map<std::string, std::string> Gripper::files() const {
   check();
-  return {{"gripper.urdf", urdf(*this)}, {"gripper.srdf", srdf(*this)}, {"finger.stl", binary_stl(*finger_mesh())}};
+  return {{"gripper.urdf", urdf(*this)}, {"gripper.srdf", srdf(*this)}, {"finger.stl", stl_to_print(*finger_mesh())}};
 }
 
 void Gripper::to_urdf(const std::string& folder) const {

@@ -23,7 +23,7 @@ from .exit_codes import DONE
 from .output_folder import LIST, OutputFolder
 
 FORMAT, VERSION = "mmgrasp-segments", 2
-FILES = ("segments.json", "segments.png", "diameters.png", LIST)
+FILES = ("segments.json", "segments.png", "primitives.png", "diameters.png", LIST)
 _UNKNOWN_SHARE = 0.2
 _MOST_WIDTHS = 8  # in a row of the table; segments.json has all
 
@@ -49,7 +49,9 @@ def run_segment(arguments: argparse.Namespace, console: Console) -> int:
 
                 with folder.illustrated() as draft:
                     names = [segment["name"] for segment in content["segments"]]
-                    write_segment_pictures(points, mesh.triangles, found.labels, names, found.diameters, draft)
+                    write_segment_pictures(
+                        points, mesh.triangles, found.labels, names, primitives, found.diameters, draft
+                    )
             report("writing", 1.0)
     if arguments.json:
         print(json.dumps(content, indent=1, allow_nan=False))

@@ -12,6 +12,7 @@ import numpy as np
 
 from .._core import Mesh, fit_primitives, segment_mesh, shape_diameters
 from ..grippers.motor import PARTS, ROTOR, SLEEVE, Composed
+from ..viz.primitive_bodies import primitive_body
 from ..viz.segment_pictures import coloured, diameter_bodies
 from ..viz.style import segment_colour
 from ..viz.two_sides import two_sides
@@ -80,7 +81,7 @@ def figure_5_2(context: Context) -> Result:
         result.exact(f"{name}: the median of each place is its thickness within 5 %", worst < 0.05)
     result.notes.append(
         "P1 takes the mean length of the rays; here it is the width between the two surfaces that a ray meets, which is exact on round walls and flat ones "
-        "(docs/methods/gripper_design.md)."
+        "(docs/methods/geometry.md)."
     )
     return result
 
@@ -112,12 +113,14 @@ def taken_apart(part: Composed) -> dict[str, Any]:
     found = segment_mesh(mesh)
     bodies, areas = part.body_of_faces(mesh), _areas(mesh)
     right = 0.0
-    offered = []
+    offered, bodies_found = [], []
     for k, fit in enumerate(fit_primitives(mesh, found.labels, threads=found.threads)):
         own = found.labels == k
         right += max(float(areas[own & (bodies == body)].sum()) for body in np.unique(bodies))
         offered.append({"kind": fit.kind, "widths": [round(1e3 * w.width, 3) for w in fit.widths]})
-    return {"labels": _packed(found.labels), "right": right / float(areas.sum()), "offered": offered}
+        bodies_found.append({"kind": fit.kind, "size": fit.size.tolist(), "T": fit.T_mesh_primitive.tolist()})
+    packed = _packed(found.labels)
+    return {"labels": packed, "right": right / float(areas.sum()), "offered": offered, "primitives": bodies_found}
 
 
 KIND = {2: "box", 3: "cylinder"}  # by the number of fingers (P1 5.2.1)
@@ -179,11 +182,12 @@ EXAMPLES = {"inner sleeve shaft": SLEEVE, "rotor": ROTOR}
 
 def figure_5_7(context: Context) -> Result:
     result = Result(setup=SETUP)
-    result.drawing = {"parts": {}}
+    result.drawing = {"parts": {}, "primitives": {}}
     kinds: dict[str, list[str]] = {}
     for name, part in EXAMPLES.items():
         seen = taken_apart(part)
         result.drawing["parts"][name] = seen["labels"]
+        result.drawing["primitives"][name] = seen["primitives"]
         kinds[name] = sorted(fit["kind"] for fit in seen["offered"])
         for k, (section, _) in enumerate(part.bodies):
             true = min(section) if isinstance(section, tuple) else 2 * section
@@ -201,7 +205,19 @@ def figure_5_7(context: Context) -> Result:
 
 
 def draw_figure_5_7(result: dict[str, Any]) -> Figure:
-    return _draw_parts(EXAMPLES, result["drawing"]["parts"], 2)
+    """Segments above, what stands for them below."""
+    fig, axes = figure(5.0, 3.0, columns=2, rows=2)
+    for axis in axes:
+        axis.axis("off")
+    for column, (name, part) in enumerate(EXAMPLES.items()):
+        mesh = part.mesh()
+        labels = _unpacked(result["drawing"]["parts"][name])
+        found = result["drawing"]["primitives"][name]
+        bodies = [primitive_body(p["kind"], p["size"], p["T"], segment_colour(i)) for i, p in enumerate(found)]
+        axes[column].imshow(two_sides(coloured(mesh.vertices, mesh.triangles, labels, segment_colour), side=320))
+        axes[column].set_title(name, fontsize=9)
+        axes[2 + column].imshow(two_sides(bodies, side=320))
+    return fig
 
 
 ENTRIES = [

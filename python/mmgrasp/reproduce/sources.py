@@ -1,6 +1,6 @@
 """Which sources a stored result was made from: a hash goes with it, and the page names results that are older than theirs.
 
-Chapter 4 of P1 and that of P3 so far. What the library beneath it (collisions, kinematics) gives is held by tests of its own and does not count.
+Chapters 4 and 5 of P1 and 4 of P3 so far. What the library beneath it (collisions, kinematics) gives is held by tests of its own and does not count.
 """
 
 from __future__ import annotations
@@ -40,6 +40,16 @@ _TRIALS = (
     "python/mmgrasp/reproduce/grasping_trials.py", "python/mmgrasp/reproduce/height_features.py",
     "python/mmgrasp/reproduce/unknown_objects.py",
 )  # fmt: skip
+_SEGMENTS = (
+    "cpp/src/geometry/segmentation",
+    "python/mmgrasp/grippers/motor.py",
+    "python/mmgrasp/reproduce/segmentation.py",
+)
+_LEAST_SET = ("cpp/src/gripper_design", "python/mmgrasp/reproduce/gripper_sets.py")
+_DESIGN = (
+    *_LEAST_SET, "cpp/src/geometry/segmentation", "cpp/src/grasp/assembly", "python/mmgrasp/grippers",
+    "python/mmgrasp/reproduce/gripper_assembly.py",
+)  # fmt: skip
 SOURCES: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(
         ("p1-figure-4.3", "p1-figure-4.4", "p1-figure-4.5", "p1-figure-4.6", "p1-figure-4.13"),
@@ -49,6 +59,9 @@ SOURCES: dict[str, tuple[str, ...]] = {
     "p1-figure-4.10": _SIM,
     "p1-figure-4.12": _SIM,
     "p1-table-3.5-drive-by": (*_TRAJOPT, "cpp/src/task/part_supply", "python/mmgrasp/reproduce/three_ways.py"),
+    **dict.fromkeys(("p1-figure-5.2", "p1-figure-5.4", "p1-figure-5.7"), _SEGMENTS),
+    **dict.fromkeys(("p1-figure-5.13", "p1-gripper-growth"), _LEAST_SET),
+    **dict.fromkeys(("p1-figure-5.14", "p1-figure-5.16"), _DESIGN),
     "p3-figure-4.6": _LINE,
     **dict.fromkeys(("p3-figure-4.15", "p3-figure-4.18", "p3-figure-4.19"), _SURFACES),
     "p3-figure-4.21": _SYNTHESIS,

@@ -36,6 +36,9 @@ CAR = [
 TABLE = LinkShape(_core.Plane([0, 0, 1], 0.0))
 INTRINSICS = _core.PinholeCamera(width=160, height=120, fx=200.0, fy=200.0, cx=79.5, cy=59.5)
 NOISES = (0.0, 0.01, 0.02, 0.03)
+REACH = (
+    0.09  # the bunny reaches no farther along and across [m]; beyond it ripples of a noisy table are higher than 1 cm
+)
 LEAST_SIGMA = 0.0005  # told to the map of noise-free frames
 CRITERIA_NOISE = 0.001
 CRITERIA = ("angle", "placement", "centring", "certainty")
@@ -65,7 +68,7 @@ def bunny_map(noise: float, frames: int, seed: int) -> _core.ProbabilisticSdf:
 def measure_noise(noise: float, frames: int, seed: int) -> dict[str, Any]:
     sdf = bunny_map(noise, frames, seed)
     points, _, sigma = sdf.points()
-    above = points[:, 2] > 0.01
+    at_bunny = (np.abs(points[:, :2]) < REACH).all(axis=1) & (points[:, 2] > 0.01)
     for sigmas in CAUTIOUS:  # the most cautious that leaves a grasp
         found = _core.synthesize_grasps(
             sdf, gripper(), table=0.0, samples=1000, table_tolerance=0.006, sigmas=sigmas, seed=seed, threads=1
@@ -73,8 +76,8 @@ def measure_noise(noise: float, frames: int, seed: int) -> dict[str, Any]:
         if found.grasps:
             break
     out: dict[str, Any] = {
-        "sigma": float(np.median(sigma[above])),
-        "error": float(np.median(distance_to(BUNNY, points[above]))),
+        "sigma": float(np.median(sigma[at_bunny])),
+        "error": float(np.median(distance_to(BUNNY, points[at_bunny]))),
         "grasps": len(found.grasps),
         "sigmas": sigmas,
         "why": found.summary(),
@@ -130,9 +133,11 @@ def run_noise(context: Context) -> Result:
         sorted(each["sigma"] for each in found) == [each["sigma"] for each in found],
     )
     if exact and found[1]["pose"] and not context.quick:
-        result.trend("with 1 cm it is within 2 cm of that without noise", difference(exact, found[1]["pose"])[0] < 0.02)
+        apart, turned = difference(exact, found[1]["pose"])
+        result.trend("with 1 cm it is where it is without noise, within 2 cm", apart < 0.02)
+        result.trend("and the hand is turned by no more than 30 degrees", turned < 30)
     result.notes.append(
-        "P3 finds grasps up to 2 cm of noise and none with 3 cm. Ours asks for 2, then 1, then no standard deviations around the hand "
+        "P3 finds grasps up to 2 cm of noise, almost the same with 1 cm, and none with 3 cm. Ours asks for 2, then 1, then no standard deviations around the hand "
         "('sigmas kept free'): a grasp with 0 is one of a surface that is not known, whatever its probability says."
     )
     result.notes += [f"{100 * item['noise']:g} cm: {ours['why']}" for item, ours in zip(items, found, strict=True)]
@@ -148,7 +153,7 @@ def draw_noise(result: dict[str, Any]) -> Figure:
     for column in ("sigma of the surface, median [mm]", "error of the surface, median [mm]"):
         axes[0].plot(noise, [row["values"][column]["ours"] for row in result["rows"]], marker="o", label=column)
     axes[0].set(xlabel="noise of a depth [cm]", ylabel="[mm]", ylim=(0, None))
-    axes[0].legend(frameon=False)
+    axes[0].legend(frameon=False, loc="upper left")
     axes[1].bar(noise, [row["values"]["probability"]["ours"] or 0 for row in result["rows"]], width=0.5)
     axes[1].set(xlabel="noise of a depth [cm]", ylabel="probability of the best grasp (0: none)", ylim=(0, 1))
     return fig

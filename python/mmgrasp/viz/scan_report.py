@@ -70,7 +70,7 @@ def _objects(objects: dict[str, Any]) -> str:
     if plane is None:
         return ""
     normal = ", ".join(f"{x:.3f}" for x in plane["normal"])
-    lead = f"<p class='lead'>Supporting plane ({normal}) . x = {plane['offset']:.4f} m. Objects that touch are one.</p>"
+    lead = f"<p class='lead'>Supporting plane ({normal}) . x = {plane['offset']:.4f} m.</p>"
     rows = []
     for k, row in enumerate(objects["objects"]):
         x, y, z = row["pose"]["xyz"]

@@ -1,4 +1,4 @@
-"""Pictures of a part's segments and shape diameters, from two opposite sides."""
+"""Pictures of a part's segments, their primitives and shape diameters, from two opposite sides."""
 
 from __future__ import annotations
 
@@ -8,8 +8,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from .._core import FittedPrimitive
 from .legend import legend
 from .png import write_png
+from .primitive_bodies import primitive_body
 from .style import hue_colour, segment_colour
 from .two_sides import Body, two_sides
 
@@ -28,11 +30,15 @@ def write_segment_pictures(
     triangles: np.ndarray,
     labels: np.ndarray,
     names: Sequence[str],
+    primitives: Sequence[FittedPrimitive],
     diameters: np.ndarray,
     folder: Path,
 ) -> None:
-    """segments.png, a colour a segment with its name below, and diameters.png, thin (blue) to thick (red) by rank."""
+    """segments.png, a colour a segment with its name below, primitives.png, what stands for them in the same colours, and diameters.png, thin (blue)
+    to thick (red) by rank."""
     write_png(folder / "segments.png", segment_picture(vertices, triangles, labels, names))
+    bodies = [primitive_body(p.kind, p.size, p.T_mesh_primitive, segment_colour(i)) for i, p in enumerate(primitives)]
+    write_png(folder / "primitives.png", two_sides(bodies))
     write_png(folder / "diameters.png", two_sides(diameter_bodies(vertices, triangles, diameters)))
 
 

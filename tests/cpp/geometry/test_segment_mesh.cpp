@@ -386,5 +386,17 @@ TEST(FitPrimitives, NumbersThatNoFaceHasAreEmptySegments) {
   EXPECT_GT(fits[3].size.minCoeff(), 0.01);
 }
 
+TEST(SegmentMesh, TooManyTrianglesAreRefusedBeforeTheyAreLookedAt) {
+  TriangleMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.triangles.assign(10'000'001, {0, 1, 2});
+  try {
+    segment_mesh(mesh);
+    FAIL();
+  } catch (const InvalidInput& error) {
+    EXPECT_NE(std::string(error.what()).find("at most 10 million triangles"), std::string::npos) << error.what();
+  }
+}
+
 }  // namespace
 }  // namespace mmgrasp

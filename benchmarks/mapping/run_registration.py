@@ -74,7 +74,7 @@ def ours(
     camera: mg.mapping.DepthCamera,
     images: list[mg.mapping.DepthImage],
     given: np.ndarray,
-    most: int,
+    **options: int,
 ) -> tuple[np.ndarray, np.ndarray, int]:
     """Poses (the given one where the frame is refused), seconds, and how many were refused."""
     covariance = np.diag([OFF[0] ** 2] * 3 + [OFF[1] ** 2] * 3)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "mapping/sdf/speckles.hpp"
 #include "mmgrasp/core/parallel.hpp"
@@ -32,6 +33,19 @@ struct WindowFit {
   float su = 0, sv = 0, q = 0;
   float misfit = -1;  ///< Mean squared residual over the noise's; negative where there is no whole window.
 };
+}  // namespace
+
+struct PlaneScratch {  // Row by row as the image.
+  std::vector<float> q, rim;
+  std::vector<RowSums> rows;
+  std::vector<WindowFit> fits;
+  std::vector<std::uint8_t> broken;
+  std::vector<int> integral;
+  std::vector<Fate> fate;
+};
+
+namespace {
+
 /// More than noise makes of it in a window of this size.
 constexpr float kGoodFit = 1.4f;
 
@@ -39,7 +53,7 @@ constexpr float kGoodFit = 1.4f;
 class PlaneFitter {
  public:
   PlaneFitter(const DepthImage& image, const DepthCamera& camera, const FrameUncertainty& uncertainty,
-              const SdfOptions& options)
+              const SdfOptions& options, PlaneScratch& scratch, FramePlanes& out)
       : image_(image),
         camera_(camera),
         uncertainty_(uncertainty),
@@ -47,7 +61,15 @@ class PlaneFitter {
         width_(image.camera.width),
         height_(image.camera.height),
         fx_(static_cast<float>(image.camera.fx)),
-        fy_(static_cast<float>(image.camera.fy)) {
+        fy_(static_cast<float>(image.camera.fy)),
+        q_(scratch.q),
+        rim_(scratch.rim),
+        rows_(scratch.rows),
+        fits_(scratch.fits),
+        broken_(scratch.broken),
+        integral_(scratch.integral),
+        fate_(scratch.fate),
+        out_(out) {
     slope_limit_ = static_cast<float>(std::tan(options.max_incidence));
     least_cosine_ = static_cast<float>(std::cos(options.max_incidence));
     const Eigen::Matrix3d R = image.T_world_camera.linear();
@@ -58,38 +80,42 @@ class PlaneFitter {
     shared_ = !pose_is_exact_ || camera.systematic > 0 || camera.systematic_scale > 0;
   }
 
-  FramePlanes fit() {
+  void fit() {
     const std::size_t pixels = image_.depth.size();
     sort_depths();
     if (options_.outlier_gate > 0) {
       speckles_ = fill_speckles(q_, width_, height_, [&](std::size_t i, std::size_t j) { return joined(i, j, 1); });
     }
-    broken_.assign(pixels, 0);
+    broken_.resize(pixels);
+    rim_.resize(pixels);
     rows_.resize(pixels);
     fits_.resize(pixels);
-    fate_.assign(pixels, Fate::missing);
+    fate_.resize(pixels);
     out_.planes.resize(pixels);
     out_.bands.resize(pixels);
-    if (shared_) out_.shares.resize(pixels);
-    bands([&](int v) { break_row(v); });
+    out_.shares.resize(shared_ ? pixels : 0);
+    bands([&](int v) {
+      break_row(v);
+      sum_row(v);
+    });
     sum_broken();
-    measure_rims();
-    bands([&](int v) { sum_row(v); });
-    bands([&](int v) { fit_row(v); });
+    bands([&](int v) { fit_row(v); }, [&] { measure_rims(); });
     bands([&](int v) {
       for (int u = 0; u < width_; ++u) fate_[index(u, v)] = plane_of(u, v);
     });
     count();
-    return std::move(out_);
   }
 
  private:
   std::size_t index(int u, int v) const { return static_cast<std::size_t>(v) * width_ + u; }
 
+  /// All rows; `beside` is done meanwhile.
   template <typename Row>
-  void bands(const Row& row) const {
-    parallel_for((height_ + kBand - 1) / kBand, options_.threads, [&](std::size_t band, int) {
-      const int first = static_cast<int>(band) * kBand;
+  void bands(const Row& row, const std::function<void()>& beside = {}) const {
+    const int others = beside ? 1 : 0;
+    parallel_for(others + (height_ + kBand - 1) / kBand, options_.threads, [&](std::size_t item, int) {
+      if (static_cast<int>(item) < others) return beside();
+      const int first = (static_cast<int>(item) - others) * kBand;
       for (int v = first; v < std::min(first + kBand, height_); ++v) row(v);
     });
   }
@@ -142,11 +168,13 @@ class PlaneFitter {
 
   /// Integral image of the marks, one row and column larger.
   void sum_broken() {
-    integral_.assign(static_cast<std::size_t>(width_ + 1) * (height_ + 1), 0);
+    integral_.resize(static_cast<std::size_t>(width_ + 1) * (height_ + 1));
+    std::fill_n(integral_.begin(), width_ + 1, 0);
     for (int v = 0; v < height_; ++v) {
       int row = 0;
       int* below = &integral_[static_cast<std::size_t>(v + 1) * (width_ + 1)];
       const int* above = below - (width_ + 1);
+      below[0] = 0;
       for (int u = 0; u < width_; ++u) {
         row += broken_[index(u, v)];
         below[u + 1] = above[u + 1] + row;
@@ -157,7 +185,6 @@ class PlaneFitter {
   /// Distance of every pixel from the next break [pixels], by the chamfer metric.
   void measure_rims() {
     const float beside = 1, across = std::sqrt(2.0f), far = static_cast<float>(width_ + height_);
-    rim_.resize(broken_.size());
     const auto at = [&](int u, int v) {
       return u < 0 || v < 0 || u >= width_ || v >= height_ ? far : rim_[index(u, v)];
     };
@@ -285,6 +312,9 @@ class PlaneFitter {
 
   Fate plane_of(int u, int v) {
     const std::size_t i = index(u, v);
+    out_.planes[i] = {};
+    out_.bands[i] = {};
+    if (shared_) out_.shares[i] = {};
     const float z = image_.depth[i];
     if (!(z > 0)) return Fate::missing;
     if (z < image_.camera.nearest) return Fate::out_of_range;
@@ -371,7 +401,7 @@ class PlaneFitter {
   }
 
   void count() {
-    IntegrationReport& report = out_.report;
+    IntegrationReport& report = out_.report = {};
     for (const Fate fate : fate_) {
       report.measured += fate != Fate::missing;
       report.used += fate == Fate::used;
@@ -393,20 +423,22 @@ class PlaneFitter {
   int radius_ = 2;
   Eigen::Matrix<float, 6, 6> covariance_;
   bool pose_is_exact_ = true, shared_ = false;
-  std::vector<float> q_, rim_;
-  std::vector<RowSums> rows_;
-  std::vector<WindowFit> fits_;
-  std::vector<std::uint8_t> broken_, speckles_;
-  std::vector<int> integral_;
-  std::vector<Fate> fate_;
-  FramePlanes out_;
+  std::vector<float>&q_, &rim_;
+  std::vector<RowSums>& rows_;
+  std::vector<WindowFit>& fits_;
+  std::vector<std::uint8_t>& broken_;
+  std::vector<int>& integral_;
+  std::vector<Fate>& fate_;
+  std::vector<std::uint8_t> speckles_;
+  FramePlanes& out_;
 };
 
 }  // namespace
 
-FramePlanes frame_planes(const DepthImage& image, const DepthCamera& camera, const FrameUncertainty& uncertainty,
-                         const SdfOptions& options) {
-  return PlaneFitter(image, camera, uncertainty, options).fit();
+void frame_planes(const DepthImage& image, const DepthCamera& camera, const FrameUncertainty& uncertainty,
+                  const SdfOptions& options, FramePlanes& out) {
+  if (!out.scratch) out.scratch = std::make_shared<PlaneScratch>();
+  PlaneFitter(image, camera, uncertainty, options, *out.scratch, out).fit();
 }
 
 }  // namespace mmgrasp::detail

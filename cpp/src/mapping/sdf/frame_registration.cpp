@@ -313,7 +313,8 @@ FrameRegistration register_frame(const ProbabilisticSdf& sdf, const DepthImage& 
   of_frame.threads = options.threads;
   FrameUncertainty pixels;
   pixels.sigma = uncertainty.sigma;
-  const detail::FramePlanes frame = detail::frame_planes(image, camera, pixels, of_frame);
+  detail::FramePlanes frame;
+  detail::frame_planes(image, camera, pixels, of_frame, frame);
   const std::vector<FramePoint> points = frame_points(image, frame, options.max_points);
   return Registration(sdf, points, image.T_world_camera, uncertainty.pose_covariance, options).run();
 }

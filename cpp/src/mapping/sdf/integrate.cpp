@@ -393,7 +393,9 @@ IntegrationReport integrate_frame(SdfGrid& grid, DepthImage image, const DepthCa
   check_depths(image);
   IntegrationReport checked;
   if (grid.frames > 0) check_pose(grid.key_frame, image, grid.options, checked);
-  const FramePlanes frame = frame_planes(image, camera, uncertainty, grid.options);
+  if (!grid.frame_planes) grid.frame_planes = std::make_shared<FramePlanes>();
+  FramePlanes& frame = *grid.frame_planes;
+  frame_planes(image, camera, uncertainty, grid.options, frame);
   IntegrationReport report = frame.report;
   report.invalid = image.invalid;
   report.agreement = checked.agreement;

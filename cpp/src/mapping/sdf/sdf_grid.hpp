@@ -95,6 +95,7 @@ class KeyTable {
 using BlockMask = std::array<std::uint64_t, kBlockSide>;  // [z], bit 8 y + x
 
 class CrossingCells;
+struct FramePlanes;
 
 struct SdfGrid {
   explicit SdfGrid(const SdfOptions& chosen) : options(chosen) {}
@@ -129,6 +130,7 @@ struct SdfGrid {
   std::vector<std::array<float, 3>> correlation;
   KeyTable mask_table;
   std::vector<BlockMask> masks;
+  std::shared_ptr<FramePlanes> frame_planes;  ///< Of the last frame, for their memory; not copied, null when read.
 
  private:
   mutable std::mutex crossing_mutex_;

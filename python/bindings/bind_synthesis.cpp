@@ -357,13 +357,13 @@ void bind_synthesis(py::module_& m) {
       ("Grasps of an unknown part in a ProbabilisticSdf, most probable by P3's model (4.9) first.\n\n`table` is the "
        "height of the level table that it stands on [m], `object` a box (2, 3) that holds it, least and largest\n"
        "corner [m]; without them all of the map is the part. `robot` has the joints and bodies of a hand "
-       "of\neigengrasp_hand; without it "
+       "of\neigengrasp_hand, which needs it; without it "
        "the hand is two pads and its boxes. With `arm`, a group whose tip is the hand's tool link, "
        "grasps "
        "are\nleft out that it does not reach, with `world` without collisions, by inverse kinematics from `arm_seed` "
        "(the "
        "middle\nof the limits). `surface_draws` > 0 rates what is returned by (4.1) too. Raises InvalidInput for a map "
-       "without a surface." +
+       "without a surface and for a hand of several groups of joints without `robot`." +
        option_help(synthesis_fields()))
           .c_str());
 }

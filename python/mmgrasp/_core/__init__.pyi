@@ -6460,7 +6460,7 @@ class Gripper:
         """
     def to_urdf(self, folder: str | os.PathLike[str]) -> None:
         """
-        Writes gripper.urdf, gripper.srdf (group "fingers", states open and closed) and finger.stl into a folder, which is made where it is missing. IoError names the file that cannot be written.
+        Writes gripper.urdf, gripper.srdf (group "fingers", states open and closed) and finger.stl (millimetres) into a folder, which is made where it is missing. IoError names the file that cannot be written.
         """
     @property
     def actuator(self) -> str:
@@ -8124,9 +8124,9 @@ def synthesize_grasps(map: ProbabilisticSdf, hand: Hand, *, table: float | None 
     
     `table` is the height of the level table that it stands on [m], `object` a box (2, 3) that holds it, least and largest
     corner [m]; without them all of the map is the part. `robot` has the joints and bodies of a hand of
-    eigengrasp_hand; without it the hand is two pads and its boxes. With `arm`, a group whose tip is the hand's tool link, grasps are
+    eigengrasp_hand, which needs it; without it the hand is two pads and its boxes. With `arm`, a group whose tip is the hand's tool link, grasps are
     left out that it does not reach, with `world` without collisions, by inverse kinematics from `arm_seed` (the middle
-    of the limits). `surface_draws` > 0 rates what is returned by (4.1) too. Raises InvalidInput for a map without a surface.
+    of the limits). `surface_draws` > 0 rates what is returned by (4.1) too. Raises InvalidInput for a map without a surface and for a hand of several groups of joints without `robot`.
     
     Keyword options:
         samples: int = 200  # grasps evaluated, a third of them around the best of the others

@@ -188,6 +188,17 @@ TEST(Eigengrasp, ThreeFingerGripperOfData) {
   EXPECT_THROW(eigengrasp_hand(robot, "palm", groups, type, Vector3d::UnitY()), InvalidInput);
 }
 
+TEST(Eigengrasp, HandsOfSeveralGroupsNeedTheirRobot) {
+  const Hand pinch = eigengrasp_hand(sdh(), "tcp", kGroups, kPinch);
+  try {
+    make_hand_model(pinch);
+    FAIL();
+  } catch (const InvalidInput& error) {
+    EXPECT_NE(std::string(error.what()).find("4 groups of joints: needs its robot"), std::string::npos) << error.what();
+  }
+  EXPECT_NE(make_hand_model(pinch, sdh()), nullptr);
+}
+
 TEST(Eigengrasp, HandsWithoutFingertipsAreRefused) {
   const auto message = [](const GraspType& type, const Vector3d& approach) {
     try {

@@ -45,7 +45,8 @@ class MMGRASP_EXPORT HandModel {
   virtual bool parallel() const = 0;
 };
 
-/// A hand by its numbers: two pads of finger_depth x finger_width, the boxes of Hand::shapes().
+/// A hand by its numbers: two pads of finger_depth x finger_width, the boxes of Hand::shapes(). Throws InvalidInput for
+/// hands of several joint groups, which need their robot (eigengrasp.hpp).
 MMGRASP_EXPORT std::shared_ptr<const HandModel> make_hand_model(const Hand& hand);
 
 /// 0 for the pads that push the first one's way, 1 for those that push against it, by the unit vectors along which they

@@ -50,6 +50,9 @@ class NumberedHand final : public HandModel {
 }  // namespace
 
 std::shared_ptr<const HandModel> make_hand_model(const Hand& hand) {
+  const std::size_t groups = hand.groups().size();
+  require(groups <= 1, "hand", std::to_string(groups) + " groups of joints",
+          "needs its robot, which has the links that they move: without it a hand is two pads");
   return std::make_shared<NumberedHand>(hand);
 }
 

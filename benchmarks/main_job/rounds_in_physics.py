@@ -42,7 +42,7 @@ class Trial:
     touched: str
     """Bodies that the part touches at the end."""
     slip: float
-    """Of the part from where the hand should have it [m]."""
+    """How far the part is from where the hand should have it [m]."""
     pushed: float
     """The farthest that another part was moved [m]."""
     base_error: float

@@ -166,7 +166,8 @@ void bind_gripper(py::module_& m) {
           "One finger to print: closed, convex, on the palm at z = 0, its pad in the plane x = 0 [m].")
       .def(
           "to_urdf", [](const G& g, const PathLike& folder) { g.to_urdf(path_argument(folder, "folder")); }, "folder"_a,
-          "Writes gripper.urdf, gripper.srdf (group \"fingers\", states open and closed) and finger.stl (millimetres) into a "
+          "Writes gripper.urdf, gripper.srdf (group \"fingers\", states open and closed) and finger.stl (millimetres) "
+          "into a "
           "folder, which is made where it is missing. IoError names the file that cannot be written.")
       .def(
           "to_dict",

@@ -113,5 +113,5 @@ def test_grippers_whose_fingers_do_not_move_apart_are_refused(tmp_path: Path) ->
     assert "must differ from closed" in refusal(text.replace(joints, still, 1))
     both = re.search(r"joints:\n(    - .*\n){2}", text)
     assert both
-    assert "joints: must name a joint" in refusal(text.replace(both[0], "joints: []\n"))
+    assert "joints = []: must name a joint" in refusal(text.replace(both[0], "joints: []\n"))
     assert "moves 0 m along closing" in refusal(text.replace("closing: [0, 1, 0]", "closing: [0, 0, 1]"))

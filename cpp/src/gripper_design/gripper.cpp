@@ -168,7 +168,7 @@ void append(std::string& out, T value) {
   out.append(bytes, sizeof value);
 }
 
-/// In millimetres, which programs for printers take an STL to be in.
+/// A binary STL in millimetres, which programs for printers take it to be in.
 std::string stl_to_print(const TriangleMesh& mesh) {
   std::string out(80, ' ');
   append(out, static_cast<std::uint32_t>(mesh.triangles.size()));

@@ -133,8 +133,8 @@ def run_noise(context: Context) -> Result:
         sorted(each["sigma"] for each in found) == [each["sigma"] for each in found],
     )
     if exact and found[1]["pose"] and not context.quick:
-        apart, turned = difference(exact, found[1]["pose"])
-        result.trend("with 1 cm it is where it is without noise, within 2 cm", apart < 0.02)
+        away, turned = difference(exact, found[1]["pose"])
+        result.trend("with 1 cm it is where it is without noise, within 2 cm", away < 0.02)
         result.trend("and the hand is turned by no more than 30 degrees", turned < 30)
     result.notes.append(
         "P3 finds grasps up to 2 cm of noise, almost the same with 1 cm, and none with 3 cm. Ours asks for 2, then 1, then no standard deviations around the hand "

@@ -31,7 +31,8 @@ def _profile(kind: str, size: np.ndarray) -> np.ndarray:
     """Radius and height [m] from foot to top, both ends on the axis."""
     if kind == "sphere":
         turn = np.linspace(-np.pi / 2, np.pi / 2, _RINGS)
-        return size[0] / 2 * np.column_stack([np.cos(turn), np.sin(turn)])
+        arc: np.ndarray = size[0] / 2 * np.column_stack([np.cos(turn), np.sin(turn)])
+        return arc
     foot, top, half = size[0] / 2, size[1] / 2, size[2] / 2
     return np.array([[0, -half], [foot, -half], [top, half], [0, half]])
 

@@ -59,9 +59,10 @@ struct MMGRASP_EXPORT Gripper {
   Hand hand() const;
   /// One finger, to print: closed, convex, standing on the palm at z = 0, its pad in the plane x = 0, facing -x [m].
   std::shared_ptr<const TriangleMesh> finger_mesh() const;
-  /// URDF and SRDF as texts by file name ("gripper.urdf", "gripper.srdf"), and the finger as a binary STL in millimetres,
-  /// to print ("finger.stl"), which the URDF names by its relative path and scales. The group "fingers" holds the driven joint; the others
-  /// follow it (mimic); the states "open" and "closed" are there; the end effector is mounted by "base".
+  /// URDF and SRDF as texts by file name ("gripper.urdf", "gripper.srdf"), and the finger as a binary STL in
+  /// millimetres, to print ("finger.stl"), which the URDF names by its relative path and scales. The group "fingers"
+  /// holds the driven joint; the others follow it (mimic); the states "open" and "closed" are there; the end effector
+  /// is mounted by "base".
   std::map<std::string, std::string> files() const;
   /// Writes files() into a folder, which is made where it is missing. Throws IoError naming the file.
   void to_urdf(const std::string& folder) const;

@@ -182,8 +182,8 @@ class Candidates {
   struct Candidate {
     ContactPairProvenance provenance;
     Eigen::Vector3d approach;
-    double standoff;                  // [m]
-    Eigen::Vector3d middle;           // Where the pads meet the part.
+    double standoff;         // [m]
+    Eigen::Vector3d middle;  // Where the pads meet the part.
     double width, alignment;
   };
 

@@ -27,8 +27,8 @@ struct FramePlanes {
   std::shared_ptr<PlaneScratch> scratch;
 };
 
-/// `image` has been cleaned and checked. What `out` held is lost, its memory is used again: the system would clear megabytes for
-/// every frame.
+/// `image` has been cleaned and checked. What `out` held is lost, its memory is used again: the system would clear
+/// megabytes for every frame.
 void frame_planes(const DepthImage& image, const DepthCamera& camera, const FrameUncertainty& uncertainty,
                   const SdfOptions& options, FramePlanes& out);
 

@@ -130,7 +130,7 @@ struct SdfGrid {
   std::vector<std::array<float, 3>> correlation;
   KeyTable mask_table;
   std::vector<BlockMask> masks;
-  std::shared_ptr<FramePlanes> frame_planes;  ///< Of the last frame, for their memory; not copied, null when read.
+  std::shared_ptr<FramePlanes> frame_planes;  ///< The last frame's, for their memory; not copied.
 
  private:
   mutable std::mutex crossing_mutex_;

@@ -109,6 +109,15 @@ def test_grippers_whose_fingers_do_not_move_apart_are_refused(tmp_path: Path) ->
     swapped = swapped.replace("closed: @", f"closed: {opened}")
     still = joints.replace(f"open: {opened}", f"open: {closed}")
     assert joints not in (swapped, still)
+    both_swapped = text
+    for line in text.splitlines():
+        if "_gripper_finger_joint, closed:" in line:
+            both_swapped = both_swapped.replace(
+                line, line.replace("closed: 0.0, open: 0.05", "closed: 0.05, open: 0.0")
+            )
+    assert "are closed and open swapped?" in refusal(both_swapped)
+    left = next(line for line in text.splitlines() if "left_gripper_finger_joint" in line and "open" in line)
+    assert "the finger link left_gripper_finger_link stands still" in refusal(text.replace(left + "\n", "", 1))
     assert "move the same way along closing" in refusal(text.replace(joints, swapped, 1))
     assert "must differ from closed" in refusal(text.replace(joints, still, 1))
     both = re.search(r"joints:\n(    - .*\n){2}", text)

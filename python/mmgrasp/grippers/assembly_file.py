@@ -147,7 +147,7 @@ def _read_assembly(root: Node, source: str) -> Assembly:
     unit = root["unit"].choice(*UNITS)
     scale = UNITS[unit]
     parts: dict[str, AssemblyPart] = {}
-    for node in root["parts"].elements():
+    for node in _filled(root["parts"]):
         part = _read_part(node, scale, unit)
         if part.name in parts:
             node["name"].fail("is there twice: parts must have names of their own")
@@ -250,6 +250,8 @@ def _turned(node: Node, scale: float) -> Mesh:
         node.fail("must have at least three rows [radius, z]")
     if (rows[:, 0] < 0).any():
         node.fail("radii must be at least 0")
+    if not rows[:, 0].any():
+        node.fail("a radius must be above 0: all of the profile lies on the axis")
     if 2 * SIDES * len(rows) <= MOST_TRIANGLES and (meeting := meeting_edges(rows)) is not None:
         first, second = (_edge_text(rows, i) for i in meeting)
         node.fail(f"must not cross itself or touch itself off the axis: the edge {first} meets the edge {second}")

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from .._core import Hand, HandJoint, InvalidInput, Robot
+from .._core import Hand, HandJoint, InvalidInput, Mesh, Robot
 from ..documents.reading import Node
 from .robot_names import check_link, joint_value
 from .suction_section import read_cups
@@ -62,11 +62,14 @@ def read_hand(node: Node, robot: Robot, tool_link: str) -> Hand:
 
 
 def _check_finger_travel(node: Node, robot: Robot, hand: Hand) -> None:
-    """Both fingers meet a part at once: those that slide go half of the opening along `closing`, apart as they open."""
+    """Both fingers meet a part at once: all move, and those that slide go half of the opening along `closing`, apart as they open."""
     ends = [robot.link_poses(hand.joint_values(opening)) for opening in (0.0, hand.max_opening)]
-    ways = {}
+    ways, places = {}, {}
     for link in hand.finger_links:
         closed, opened = (np.linalg.inv(poses[hand.tool_link]) @ poses[link] for poses in ends)
+        if np.allclose(opened, closed, atol=1e-9):
+            node.fail(f"move {', '.join(j.name for j in hand.joints)}: the finger link {link} stands still")
+        places[link] = float(hand.closing @ (closed @ _middle(robot, link))[:3])
         moved = (opened - closed)[:3, 3]
         if np.linalg.norm(moved) > 1e-9 and np.allclose(opened[:3, :3], closed[:3, :3], atol=1e-9):
             ways[link] = hand.closing @ moved
@@ -78,6 +81,19 @@ def _check_finger_travel(node: Node, robot: Robot, hand: Hand) -> None:
             )
     if len(ways) > 1 and len({way > 0 for way in ways.values()}) == 1:
         node.fail(f"{' and '.join(ways)} move the same way along closing: fingers must move apart as they open")
+    outer = max(ways, key=lambda link: places[link], default=None)
+    inner = min(ways, key=lambda link: places[link], default=None)
+    if outer and inner and places[outer] > places[inner] and ways[outer] < ways[inner]:
+        node.fail(f"{inner} and {outer} come nearer to each other as they open: are closed and open swapped?")
+
+
+def _middle(robot: Robot, link: str) -> np.ndarray:
+    """Mean place of a link's shapes in its frame, homogeneous; its origin where it has none [m]."""
+    places = [
+        shape.pose @ np.append(shape.shape.vertices.mean(axis=0) if isinstance(shape.shape, Mesh) else np.zeros(3), 1.0)
+        for shape in robot.collisions(link)
+    ]
+    return np.mean(places, axis=0) if places else np.array([0.0, 0.0, 0.0, 1.0])
 
 
 def _axes(node: Node) -> dict[str, Any]:

@@ -57,12 +57,14 @@ def read_hand(node: Node, robot: Robot, tool_link: str) -> Hand:
             payload=payload,
             **sizes,
         )
-    _check_finger_travel(node["joints"], robot, hand)
     return hand
 
 
-def _check_finger_travel(node: Node, robot: Robot, hand: Hand) -> None:
+def check_finger_travel(section: Node, robot: Robot, hand: Hand) -> None:
     """Both fingers meet a part at once: all move, and those that slide go half of the opening along `closing`, apart as they open."""
+    if "joints" not in section:
+        return
+    node = section["joints"]
     ends = [robot.link_poses(hand.joint_values(opening)) for opening in (0.0, hand.max_opening)]
     ways, places = {}, {}
     for link in hand.finger_links:

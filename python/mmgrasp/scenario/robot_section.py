@@ -24,7 +24,7 @@ from .._files import ASSETS, shipped
 from .._progress import Progress
 from ..documents.reading import RENAMED, Node, near_miss, read_yaml
 from .closed_fingers import fingers_may_meet, held_links_may_meet
-from .gripper_section import read_hand
+from .gripper_section import check_finger_travel, read_hand
 from .robot_names import check_link, joint_value
 from .shapes import read_shapes
 from .wheels import limits_of_wheels
@@ -151,7 +151,9 @@ def read_gripper(source: str) -> Hand:
     sections = _sections_of(source)
     robot = compose(sections.robot.mapping("urdf tool_link", f"group home {ROBOT_KEYS}"))
     check_link(robot, sections.robot["tool_link"])
-    return read_hand(sections.gripper, robot, sections.robot["tool_link"].string())
+    hand = read_hand(sections.gripper, robot, sections.robot["tool_link"].string())
+    check_finger_travel(sections.gripper, robot, hand)
+    return hand
 
 
 @checked
@@ -191,6 +193,7 @@ def read_setup(sections: RobotSections, progress: Progress = None) -> RobotSetup
     for key in ("finger_links", "cup_links"):
         if key in sections.gripper:
             _check_finger_links(sections.gripper[key], arm, tool_link, home)
+    check_finger_travel(sections.gripper, robot, gripper)
     speed = (
         sections.gripper["closing_speed"].number(least=1e-4, most=10) if "closing_speed" in sections.gripper else 0.1
     )
@@ -224,6 +227,7 @@ def _arm_setup(node: Node, hand: Node, progress: Progress) -> ArmSetup:
     robot = fingers_may_meet(_core.with_sampled_pairs(robot, progress=progress), gripper)
     other = {name: joint_value(robot, name, value) for name, value in _named_numbers(node, "joints")}
     arm = _arm_of(robot, node["group"], _read_group(robot, node["group"], tool_link))
+    check_finger_travel(hand, robot, gripper)
     return ArmSetup(robot, arm.with_reference({**other, **gripper.joint_values(0.0)}), gripper)
 
 

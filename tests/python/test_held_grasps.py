@@ -53,6 +53,15 @@ def test_parts_thinner_than_the_gap_of_closed_fingers_are_refused_at_their_line(
     assert width in openings
 
 
+@pytest.mark.slow
+def test_grasps_that_just_touch_a_tray_do_not_refute_a_region(tmp_path: Path) -> None:
+    """Of thin brackets there are few grasps; with the hand at 45 degrees it lies on the tray's rim, 1e-9 m away or in it."""
+    scenario = mg.load_scenario(with_brackets(tmp_path, "box: [0.03, 0.001, 0.07]"))
+    plan = mg.part_supply.plan_part_supply(scenario)
+    assert plan.outcome == mg.Outcome.solved
+    assert mg.part_supply.verify_plan(plan.to_dict()).faults == []
+
+
 def test_grasps_across_the_thin_side_are_left_out_and_others_stay(tmp_path: Path) -> None:
     grasps = parts_of(with_brackets(tmp_path, "box: [0.0005, 0.05, 0.07]"))[0].grasps
     assert grasps

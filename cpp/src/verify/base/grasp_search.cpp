@@ -74,7 +74,8 @@ bool GraspSearch::try_hold(int part, Hold& hold) {
   if (grasp.opening > context_.plan.max_opening + 1e-6) return false;
   const Pose T_root_tip = judge_.T_world_root().inverse() * p.body.T_world_body * grasp.T_object_hand;
   if (!solve_tip_pose(judge_.kinematics(), T_root_tip, tolerance_, hold.arm)) return false;
-  return !judge_.touch(hold.arm, context_.pregrasp_opening(grasp.opening));
+  const double opening = context_.pregrasp_opening(grasp.opening);
+  return !judge_.touch(hold.arm, opening) && !(clearance_ > 0 && judge_.comes_near(hold.arm, opening, clearance_));
 }
 
 /// Other grasps from what the pools know, then from anywhere.

@@ -37,6 +37,9 @@ class GraspSearch {
   bool find_thoroughly(int part);
   /// Moves the base there: whether the robot may stand there at home and grasp all these parts.
   bool serves(const Eigen::Vector3d& base_pose, const std::vector<int>& parts, bool thoroughly = false);
+  /// From now on a grasp at which the robot just touches something does not count: configurations are off by up to
+  /// their tolerance, so that rounding and search decide whether they touch.
+  void leave_out_ties(bool on) { clearance_ = on ? 2 * tolerance_.position : 0; }
 
  private:
   bool try_hold(int part, Hold& hold);
@@ -49,6 +52,7 @@ class GraspSearch {
   Pools pools_;
   Rng rng_;
   int tries_;
+  double clearance_ = 0;
   IkTolerance tolerance_;
 };
 

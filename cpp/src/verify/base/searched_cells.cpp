@@ -44,9 +44,12 @@ bool whole_cell_serves(const PlanToCheck& plan, GraspSearch& search, const Searc
   constexpr double kLow = -kBeyond, kHigh = 1 + kBeyond;
   constexpr std::array<std::array<double, 2>, 5> kPlaces = {
       {{kLow, kLow}, {kHigh, kHigh}, {kLow, kHigh}, {kHigh, kLow}, {0.5, 0.5}}};
-  return std::all_of(kPlaces.begin(), kPlaces.end(), [&](const auto& place) {
+  search.leave_out_ties(true);
+  const bool serves = std::all_of(kPlaces.begin(), kPlaces.end(), [&](const auto& place) {
     return base_pose_serves(plan, search, cells.pose(cell, place[0], place[1]), parts);
   });
+  search.leave_out_ties(false);
+  return serves;
 }
 
 }  // namespace mmgrasp::verify::detail

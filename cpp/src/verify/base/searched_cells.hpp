@@ -59,7 +59,8 @@ bool base_pose_serves(const PlanToCheck& plan, GraspSearch& search, const Eigen:
                       const std::vector<int>& parts, bool thoroughly = false);
 
 /// Whether a cell serves the parts at its corners and its middle, which is how planners look at a cell. Corners are
-/// taken a little farther out: where the robot just touches something at one, either answer is right.
+/// taken a little farther out, and grasps at which the robot just touches something do not count: either answer is
+/// right there.
 bool whole_cell_serves(const PlanToCheck& plan, GraspSearch& search, const SearchedCells& cells, const Cell& cell,
                        const std::vector<int>& parts);
 

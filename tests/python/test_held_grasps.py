@@ -55,7 +55,7 @@ def test_parts_thinner_than_the_gap_of_closed_fingers_are_refused_at_their_line(
 
 @pytest.mark.slow
 def test_grasps_that_just_touch_a_tray_do_not_refute_a_region(tmp_path: Path) -> None:
-    """Of thin brackets there are few grasps; with the hand at 45 degrees it lies on the tray's rim, 1e-9 m away or in it."""
+    """Thin brackets have few grasps; with the hand at 45 degrees it lies on the tray's rim, 1e-9 m away or in it."""
     scenario = mg.load_scenario(with_brackets(tmp_path, "box: [0.03, 0.001, 0.07]"))
     plan = mg.part_supply.plan_part_supply(scenario)
     assert plan.outcome == mg.Outcome.solved

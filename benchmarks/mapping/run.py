@@ -3,7 +3,8 @@
     python benchmarks/mapping/run.py [--frames FOLDER] [--count N] [--voxel 0.002] [--truncation 0.01]
                                      [--baselines FOLDER] [--write]
 
-Real frames: FOLDER of 16-bit depth images in millimetres with poses (default: tsdf_fusion of the shared data). Rendered
+Real frames: FOLDER of 16-bit depth images in millimetres with poses (default: tsdf_fusion of the shared data), and the
+five of Open3D's own tests there. Rendered
 frames: a box, a sphere and a can on a table, of which the truth is known. Open3D lives in an environment of its own
 below build/, or the one named by --baselines; where it cannot be installed its columns stay empty. Then balls: one, and
 eight of them in volumes of three sizes. --write puts the tables into benchmarks/README.md.
@@ -257,8 +258,8 @@ def processor() -> str:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    shared = ROOT.parent / "shared/data/clouds/tsdf_fusion/rgbd-frames"
-    parser.add_argument("--frames", type=Path, default=shared)
+    shared = ROOT.parent / "shared/data/clouds"
+    parser.add_argument("--frames", type=Path, default=shared / "tsdf_fusion/rgbd-frames")
     parser.add_argument("--count", type=int, default=50)
     parser.add_argument("--voxel", type=float, default=0.002)
     parser.add_argument("--truncation", type=float, default=0.010)
@@ -269,9 +270,11 @@ def main() -> None:
     rows = compared("rendered", rendered(arguments.count), arguments, python)
     if arguments.frames.exists():
         rows += compared("real", recorded(arguments.frames, arguments.count), arguments, python)
+    if (shared / "open3d/RGBD").exists():
+        rows += compared("Open3D's five", recorded(shared / "open3d/RGBD", arguments.count), arguments, python)
     load = os.getloadavg()[0]
     text = [
-        f"{arguments.count} frames of each kind; {processor()}, {len(os.sched_getaffinity(0))} cores, load {load:.1f}.",
+        f"{arguments.count} frames of a kind, at most; {processor()}, {len(os.sched_getaffinity(0))} cores, load {load:.1f}.",
         f"Rays and points: on {THREADS} threads by the clock; for each second of a core.",
         "",
         markdown(["", "mmgrasp", "Open3D `VoxelBlockGrid`"], rows),

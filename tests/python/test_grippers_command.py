@@ -368,7 +368,7 @@ def test_wrong_names_of_segments_are_told_at_their_line(
             "is 170 m from corner to corner with unit: m; a part for a gripper is from 0.001 m to 3 m: is mm meant?",
         ),
         ({"unit": "feet"}, "unit = 'feet'"),
-        ({"parts": []}, "is no part"),
+        ({"order": [{"part": "no such"}]}, "is no part"),
         ({"order": []}, "must not be empty"),
         ({"order": [{"part": "shaft"}, {"part": "shaft"}]}, "an order names a part once"),
         ({"order": [{"part": "shafts"}]}, "did you mean shaft"),

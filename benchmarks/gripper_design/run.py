@@ -1,5 +1,5 @@
-"""Segments of 50 composed parts against the primitives they were made of: share of faces right, widths offered, and seconds for the call alone: processor time, and the
-clock's, which the machine's load (stated) adds to.
+"""Segments of 50 composed parts against the primitives they were made of: share of faces right, widths offered, and
+seconds for the call alone: processor time, and the clock's, which the machine's load (stated) adds to.
 
     python benchmarks/gripper_design/run.py [--parts 50] [--triangles 0] [--write]
 

@@ -4,10 +4,10 @@
                                      [--baselines FOLDER] [--write]
 
 Real frames: FOLDER of 16-bit depth images in millimetres with poses (default: tsdf_fusion of the shared data), and the
-five of Open3D's own tests there. Rendered
-frames: a box, a sphere and a can on a table, of which the truth is known. Open3D lives in an environment of its own
-below build/, or the one named by --baselines; where it cannot be installed its columns stay empty. Then balls: one, and
-eight of them in volumes of three sizes. --write puts the tables into benchmarks/README.md.
+five of Open3D's own tests there. Rendered frames: a box, a sphere and a can on a table, of which the truth is known.
+Open3D lives in an environment of its own below build/, or the one named by --baselines; where it cannot be installed
+its columns stay empty. Then balls: one, and eight of them in volumes of three sizes. --write puts the tables into
+benchmarks/README.md.
 """
 
 from __future__ import annotations

@@ -59,7 +59,7 @@ def test_frames_of_a_wall_are_worth_the_root_of_their_number(name: str, image_of
 
 
 @pytest.mark.parametrize("name", NOISES)
-def test_no_model_is_surer_of_slanted_or_negative(name: str) -> None:
+def test_no_model_is_surer_of_what_is_slanted(name: str) -> None:
     for depth in np.linspace(0.3, 3.0, 28):
         sigmas = [NOISES[name].sigma(float(depth), float(angle)) for angle in np.linspace(0, 1.5, 31)]
         assert min(sigmas) > 0

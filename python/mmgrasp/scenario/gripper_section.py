@@ -70,7 +70,7 @@ def check_finger_travel(section: Node, robot: Robot, hand: Hand) -> None:
     for link in hand.finger_links:
         closed, opened = (np.linalg.inv(poses[hand.tool_link]) @ poses[link] for poses in ends)
         if np.allclose(opened, closed, atol=1e-9):
-            node.fail(f"move {', '.join(j.name for j in hand.joints)}: the finger link {link} stands still")
+            node.fail(f"must move every finger: the finger link {link} stands still")
         places[link] = float(hand.closing @ (closed @ _middle(robot, link))[:3])
         moved = (opened - closed)[:3, 3]
         if np.linalg.norm(moved) > 1e-9 and np.allclose(opened[:3, :3], closed[:3, :3], atol=1e-9):

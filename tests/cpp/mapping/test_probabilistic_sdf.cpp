@@ -150,6 +150,35 @@ TEST(ProbabilisticSdf, SameBitsWithAnyThreadsAndInstructions) {
   detail::use_instruction_set(usual);
 }
 
+/// What a frame is worked on in is kept for the next: of another size, with or without shared errors, it must not show.
+TEST(ProbabilisticSdf, NothingIsLeftOfTheFrameBefore) {
+  const DepthCamera whole = small_camera();
+  DepthCamera half = whole;
+  half.name = "half";
+  half.systematic = 0.0005;
+  half.intrinsics.width /= 2;
+  half.intrinsics.height /= 2;
+  half.intrinsics.cx -= half.intrinsics.width / 2.0;
+  const std::vector<DepthImage> large = noisy_sphere_frames(4, whole, 0.05), small = noisy_sphere_frames(4, half, 0.05);
+  const auto map = [&](bool anew) {
+    ProbabilisticSdf sdf;
+    std::vector<ProbabilisticSdf>
+        before;  // A map that is shared is copied before it changes, without what it worked in.
+    const auto integrate = [&](const DepthImage& image, const DepthCamera& camera,
+                               const FrameUncertainty& uncertainty) {
+      if (anew) before.push_back(sdf);
+      sdf.integrate(image, camera, uncertainty);
+    };
+    for (std::size_t k = 0; k < large.size(); ++k) {
+      integrate(large[k], whole, FrameUncertainty::of_pose(0.0004, 0.001));
+      integrate(small[k], half, {});
+      integrate(large[k], whole, {});
+    }
+    return bytes_of(sdf);
+  };
+  EXPECT_EQ(map(false), map(true));
+}
+
 TEST(ProbabilisticSdf, PlaneSeenAtAnAngle) {
   for (const double tilt : {0.0, 0.4, 0.8}) {
     const DepthCamera camera = small_camera(0.002);

@@ -60,11 +60,15 @@ bool GraspSearch::find_thoroughly(int part) {
   return find(part) || search(part, kSecondLook);
 }
 
-bool GraspSearch::serves(const Eigen::Vector3d& base_pose, const std::vector<int>& parts, bool thoroughly) {
+bool GraspSearch::serves(const Eigen::Vector3d& base_pose, const std::vector<int>& parts, Effort effort) {
   judge_.set_base(base_pose);
-  return !judge_.touch(context_.plan.home, 0) && std::all_of(parts.begin(), parts.end(), [&](int part) {
-    return thoroughly ? find_thoroughly(part) : find(part);
+  if (judge_.touch(context_.plan.home, 0)) return false;
+  clearance_ = effort == Effort::without_ties ? 2 * tolerance_.position : 0;
+  const bool all = std::all_of(parts.begin(), parts.end(), [&](int part) {
+    return effort == Effort::thorough ? find_thoroughly(part) : find(part);
   });
+  clearance_ = 0;
+  return all;
 }
 
 /// Moves the hold's configuration onto its grasp from the present base pose, and checks it.

@@ -25,6 +25,14 @@ Pools planned_holds(const Context& context);
 /// Target parts of these trays.
 std::vector<int> wanted_parts(const PlanToCheck& plan, const std::vector<std::string>& trays);
 
+/// What counts as a grasp that serves.
+enum class Effort {
+  usual,
+  thorough,      ///< As find_thoroughly().
+  without_ties,  ///< The robot keeps clear of what it might just touch: configurations are off by up to their
+                 ///< tolerance, so that rounding and search decide whether they touch.
+};
+
 /// Finds grasps from one base pose after another.
 class GraspSearch {
  public:
@@ -36,10 +44,7 @@ class GraspSearch {
   /// find() with kSecondLook tries before the part counts as lost: where a verdict hangs on it.
   bool find_thoroughly(int part);
   /// Moves the base there: whether the robot may stand there at home and grasp all these parts.
-  bool serves(const Eigen::Vector3d& base_pose, const std::vector<int>& parts, bool thoroughly = false);
-  /// From now on a grasp at which the robot just touches something does not count: configurations are off by up to
-  /// their tolerance, so that rounding and search decide whether they touch.
-  void leave_out_ties(bool on) { clearance_ = on ? 2 * tolerance_.position : 0; }
+  bool serves(const Eigen::Vector3d& base_pose, const std::vector<int>& parts, Effort effort = Effort::usual);
 
  private:
   bool try_hold(int part, Hold& hold);
@@ -52,7 +57,7 @@ class GraspSearch {
   Pools pools_;
   Rng rng_;
   int tries_;
-  double clearance_ = 0;
+  double clearance_ = 0;  // Kept by the grasps that are found [m].
   IkTolerance tolerance_;
 };
 

@@ -241,8 +241,8 @@ class RegionCheck {
                            place + " all parts can be grasped: the least number of stops is not proven"});
   }
 
-  bool serves(const Eigen::Vector3d& pose, const std::vector<int>& parts, bool thoroughly = false) {
-    return base_pose_serves(plan_, search_, pose, parts, thoroughly);
+  bool serves(const Eigen::Vector3d& pose, const std::vector<int>& parts, Effort effort = Effort::usual) {
+    return base_pose_serves(plan_, search_, pose, parts, effort);
   }
 
   /// How many of the poses serve, up to `needed`: as long as these are missing, a pose that seems lost is checked
@@ -253,7 +253,7 @@ class RegionCheck {
       if (!context_.monitor.stopped() && !serves(pose, parts)) lost.push_back(pose);
     int good = static_cast<int>(poses.size() - lost.size());
     for (const Eigen::Vector3d& pose : lost)
-      if (good < needed && !context_.monitor.stopped()) good += serves(pose, parts, true);
+      if (good < needed && !context_.monitor.stopped()) good += serves(pose, parts, Effort::thorough);
     return good;
   }
 

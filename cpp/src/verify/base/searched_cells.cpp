@@ -34,9 +34,9 @@ bool SearchedCells::other_is_served(const Cell& cell) const {
 }
 
 bool base_pose_serves(const PlanToCheck& plan, GraspSearch& search, const Eigen::Vector3d& pose,
-                      const std::vector<int>& parts, bool thoroughly) {
+                      const std::vector<int>& parts, Effort effort) {
   Faults none;
-  return check_workspace(plan, pose, 0, "", none) && search.serves(pose, parts, thoroughly);
+  return check_workspace(plan, pose, 0, "", none) && search.serves(pose, parts, effort);
 }
 
 bool whole_cell_serves(const PlanToCheck& plan, GraspSearch& search, const SearchedCells& cells, const Cell& cell,
@@ -44,12 +44,9 @@ bool whole_cell_serves(const PlanToCheck& plan, GraspSearch& search, const Searc
   constexpr double kLow = -kBeyond, kHigh = 1 + kBeyond;
   constexpr std::array<std::array<double, 2>, 5> kPlaces = {
       {{kLow, kLow}, {kHigh, kHigh}, {kLow, kHigh}, {kHigh, kLow}, {0.5, 0.5}}};
-  search.leave_out_ties(true);
-  const bool serves = std::all_of(kPlaces.begin(), kPlaces.end(), [&](const auto& place) {
-    return base_pose_serves(plan, search, cells.pose(cell, place[0], place[1]), parts);
+  return std::all_of(kPlaces.begin(), kPlaces.end(), [&](const auto& place) {
+    return base_pose_serves(plan, search, cells.pose(cell, place[0], place[1]), parts, Effort::without_ties);
   });
-  search.leave_out_ties(false);
-  return serves;
 }
 
 }  // namespace mmgrasp::verify::detail

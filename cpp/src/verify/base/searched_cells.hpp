@@ -56,7 +56,7 @@ class SearchedCells {
 
 /// Whether the robot may stand there, at home and in its workspace, and grasp all these parts.
 bool base_pose_serves(const PlanToCheck& plan, GraspSearch& search, const Eigen::Vector3d& pose,
-                      const std::vector<int>& parts, bool thoroughly = false);
+                      const std::vector<int>& parts, Effort effort = Effort::usual);
 
 /// Whether a cell serves the parts at its corners and its middle, which is how planners look at a cell. Corners are
 /// taken a little farther out, and grasps at which the robot just touches something do not count: either answer is

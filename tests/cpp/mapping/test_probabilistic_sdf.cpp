@@ -159,7 +159,19 @@ TEST(ProbabilisticSdf, NothingIsLeftOfTheFrameBefore) {
   half.intrinsics.width /= 2;
   half.intrinsics.height /= 2;
   half.intrinsics.cx -= half.intrinsics.width / 2.0;
-  const std::vector<DepthImage> large = noisy_sphere_frames(4, whole, 0.05), small = noisy_sphere_frames(4, half, 0.05);
+  // A table that fills the image to its borders, and a ball on it.
+  const std::vector<PlacedShape> scene = {{Box{{4, 4, 0.02}}, Pose(Eigen::Translation3d(0, 0, -0.01))},
+                                          {Sphere{0.05}, Pose(Eigen::Translation3d(0, 0, 0.05))}};
+  const auto frames = [&](const DepthCamera& camera) {
+    std::vector<DepthImage> out;
+    for (int k = 0; k < 4; ++k) {
+      Rng rng(5, static_cast<std::uint64_t>(k));
+      out.push_back(frame_of(scene, camera, look_at({0.1 * k, 0.1, 0.35}, {0, 0, 0})));
+      disturb(out.back(), camera, rng);
+    }
+    return out;
+  };
+  const std::vector<DepthImage> large = frames(whole), small = frames(half);
   const auto map = [&](bool anew) {
     ProbabilisticSdf sdf;
     std::vector<ProbabilisticSdf>

@@ -201,6 +201,24 @@ def _add_scan(commands: Commands) -> None:
     )
     parser.add_argument("--up", type=_direction, metavar="X,Y,Z", help="where up is in the world of the poses")
     parser.add_argument("--max-memory", type=_megabytes, metavar="MB", help="largest map in memory [MB] (default 2000)")
+    parser.add_argument(
+        "--outlier-gate",
+        type=_gate,
+        metavar="K",
+        help="leave out depths more than K standard deviations from their neighbours or from what three frames saw (default: none)",
+    )
+    parser.add_argument(
+        "--register",
+        action="store_true",
+        default=None,
+        help="move each frame onto the map, as far as pose_error of its sensor says that its pose may be off",
+    )
+    parser.add_argument(
+        "--octree",
+        type=_voxel,
+        metavar="M",
+        help="also write occupancy.bt: OctoMap's free, occupied and unknown cells of this edge [m]",
+    )
     parser.add_argument("--start-over", action="store_true", help="make the map anew instead of going on with it")
     parser.add_argument("--no-pictures", action="store_true", help="leave the pictures out of the report")
     parser.add_argument("--json", action="store_true", help="print the summary as JSON")
@@ -439,6 +457,7 @@ _seed = _count(0, 2**31 - 1, "")
 
 _length = _Number(0, 1, "m")
 _voxel = _Number(1e-4, 10, "m")
+_gate = _Number(3, 1000, "standard deviations")
 _megabytes = _Number(1, 1e7, "MB", scale=1e6)
 _coordinate = _Number(-1e6, 1e6, "m or rad")
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import os
+from collections import Counter
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +21,7 @@ from ..scan.objects import FORMAT as OBJECTS_FORMAT
 from ..scan.objects import VERSION as OBJECTS_VERSION
 from ..scan.objects import pose_to_dict
 from ..scan.surroundings import Surroundings
-from ..scenario import read_arm_of, read_gripper
+from ..scenario import HandTypes, read_hand_types
 from .console import Reporter
 from .exit_codes import DONE, NOT_FOUND
 
@@ -39,19 +40,19 @@ def run_grasp(arguments: argparse.Namespace, console: Console) -> int:
         check_new_file(arguments.png)
         if arguments.out is not None and os.path.realpath(arguments.out) == os.path.realpath(arguments.png):
             raise InvalidInput(f"--png {printable(str(arguments.png))}: is the file of -o, too: give another name")
-    hand, arm = _read_hand(arguments)
+    types = _read_hand(arguments)
     objects, plane = _read_objects(arguments.map)
     chosen = _chosen(objects, arguments.object, arguments.map)
     sdf = _core.ProbabilisticSdf.load(str(arguments.map / "map.sdf"))
-    around = None if arm is None else Surroundings(sdf)
+    around = Surroundings(sdf) if types.arms else None
     rows = []
     with Reporter(console) as report:
         for k, thing in enumerate(chosen):
             report("grasps", k / len(chosen))
-            rows.append(_grasps_of(thing, plane, sdf, hand, arm, around, arguments))
+            rows.append(_grasps_of(thing, plane, sdf, types, around, arguments))
         report("grasps", 1.0)
     content = {"format": FORMAT, "version": VERSION, "gripper": arguments.gripper or arguments.robot, "objects": rows}
-    if arm is not None:
+    if types.arms:
         content |= {"robot": arguments.robot, "base": arguments.base or [0.0] * 4}
     if arguments.out is not None:
         write_result(arguments.out, _text(content))
@@ -68,22 +69,27 @@ def run_grasp(arguments: argparse.Namespace, console: Console) -> int:
     return DONE if any(row["grasps"] for row in rows) else NOT_FOUND
 
 
-def _read_hand(arguments: argparse.Namespace) -> tuple[_core.Hand, _core.JointGroup | None]:
-    """The gripper and, with --robot, the arm that carries it, where its robot stands."""
+def _read_hand(arguments: argparse.Namespace) -> HandTypes:
+    """The gripper by its types of grasp and, with --robot, the arm that carries it, where its robot stands."""
     if arguments.robot is None:
         if arguments.gripper is None:
             raise InvalidInput("--gripper: must be given, or --robot with a gripper of its own")
         if arguments.base is not None:
             raise InvalidInput("--base: goes with --robot")
-        return read_gripper(arguments.gripper), None
-    setup = read_arm_of(arguments.robot)
-    hand = setup.gripper if arguments.gripper is None else read_gripper(arguments.gripper)
-    if hand.tool_link != setup.arm.tip:
-        raise InvalidInput(
-            f"--gripper {arguments.gripper}: its tool link {hand.tool_link} is not the tip of --robot's arm, {setup.arm.tip}"
-        )
+        return read_hand_types(arguments.gripper)
+    own = read_hand_types(arguments.robot, arm=True)
+    given = own if arguments.gripper is None else read_hand_types(arguments.gripper)
     x, y, z, heading = arguments.base or (0.0, 0.0, 0.0, 0.0)
-    return hand, setup.arm.at(_core.pose([x, y, z], rpy=[0, 0, heading]))
+    T_world_root = _core.pose([x, y, z], rpy=[0, 0, heading])
+    arms = {}
+    for kind, hand in given.hands.items():
+        arm = own.arms.get(kind, next(iter(own.arms.values())))
+        if hand.tool_link != arm.tip:
+            raise InvalidInput(
+                f"--gripper {arguments.gripper}: its tool link {hand.tool_link} is not the tip of --robot's arm, {arm.tip}"
+            )
+        arms[kind] = arm.at(T_world_root)
+    return HandTypes(given.hands, given.robot, arms)
 
 
 def _text(content: dict[str, Any]) -> str:
@@ -139,49 +145,71 @@ def _grasps_of(
     thing: dict[str, Any],
     plane: dict[str, Any],
     sdf: _core.ProbabilisticSdf,
-    hand: _core.Hand,
-    arm: _core.JointGroup | None,
+    types: HandTypes,
     around: Surroundings | None,
     arguments: argparse.Namespace,
 ) -> dict[str, Any]:
+    """An object's row: the most probable grasps of all types of the hand, and what became of the others."""
     box = thing["bounds"].copy()
     middle, normal = box.mean(axis=0), np.array(plane["normal"])
     table = float((plane["offset"] - normal[:2] @ middle[:2]) / normal[2])
     world = None if around is None else around.around(box, table)
     box += [[-_ROOM], [_ROOM]]
-    found = _core.synthesize_grasps(
-        sdf,
-        hand,
-        table=table,
-        object=box,
-        arm=arm,
-        world=world,
-        samples=arguments.samples,
-        seed=arguments.seed,
-        max_grasps=arguments.grasps,
-    )
-    if found.outcome == Outcome.stopped:
-        raise KeyboardInterrupt
-    grasps = []
-    for grasp, rating in zip(found.grasps, found.ratings, strict=True):
-        success = rating.success.to_dict()
-        reached = {} if arm is None else {"q": dict(zip(arm.names, np.asarray(rating.q).tolist(), strict=True))}
-        grasps.append(
-            {
-                **reached,
-                "T_world_hand": pose_to_dict(grasp.T_object_hand),
-                "opening": grasp.opening,
-                "pretouch_opening": rating.pretouch_opening,
-                "probability": success["probability"],
-                "criteria": {name: success[name] for name in _SHARES},
-                "approach": (grasp.T_object_hand[:3, :3] @ np.array(hand.approach)).tolist(),
-                "patches": [
-                    {"point": list(patch.point), "normal": list(patch.normal), "sigma": patch.sigma}
-                    for patch in rating.patches
-                ],
-            }
+    grasps: list[dict[str, Any]] = []
+    counts: Counter[str] = Counter()
+    said = []
+    for kind, hand in types.hands.items():
+        arm = types.arms.get(kind)
+        found = _core.synthesize_grasps(
+            sdf,
+            hand,
+            robot=types.robot,
+            table=table,
+            object=box,
+            arm=arm,
+            world=world,
+            samples=arguments.samples,
+            seed=arguments.seed,
+            max_grasps=arguments.grasps,
         )
-    return {"name": thing["name"], "summary": found.summary(), "counts": dict(found.counts), "grasps": grasps}
+        if found.outcome == Outcome.stopped:
+            raise KeyboardInterrupt
+        counts.update(found.counts)
+        said.append(f"{kind}: {found.summary()}" if kind else found.summary())
+        for grasp, rating in zip(found.grasps, found.ratings, strict=True):
+            grasps.append(({"type": kind} if kind else {}) | _grasp(grasp, rating, hand, arm))
+    grasps.sort(key=lambda grasp: -float(grasp["probability"]))
+    counts["near_better"] += len(grasps[arguments.grasps :])
+    return {
+        "name": thing["name"],
+        "summary": "; ".join(said),
+        "counts": dict(counts),
+        "grasps": grasps[: arguments.grasps],
+    }
+
+
+def _grasp(
+    grasp: _core.Grasp, rating: _core.GraspRating, hand: _core.Hand, arm: _core.JointGroup | None
+) -> dict[str, Any]:
+    success = rating.success.to_dict()
+    reached = {} if arm is None else {"q": dict(zip(arm.names, np.asarray(rating.q).tolist(), strict=True))}
+    jointed = {}
+    if rating.pretouch_posture:
+        jointed["pretouch_joints"] = hand.posture_values(rating.pretouch_posture)
+        jointed["joints"] = hand.joint_values(grasp)
+    return {
+        **reached,
+        **jointed,
+        "T_world_hand": pose_to_dict(grasp.T_object_hand),
+        "opening": grasp.opening,
+        "pretouch_opening": rating.pretouch_opening,
+        "probability": success["probability"],
+        "criteria": {name: success[name] for name in _SHARES},
+        "approach": (grasp.T_object_hand[:3, :3] @ np.array(hand.approach)).tolist(),
+        "patches": [
+            {"point": list(patch.point), "normal": list(patch.normal), "sigma": patch.sigma} for patch in rating.patches
+        ],
+    }
 
 
 def _lost(row: dict[str, Any]) -> str:
@@ -195,17 +223,20 @@ def _lost(row: dict[str, Any]) -> str:
 
 
 def _print(rows: list[dict[str, Any]], written: dict[str, Path | None], console: Console) -> None:
+    typed = any("type" in grasp for row in rows for grasp in row["grasps"])
     table = Table(title="the best grasp of each object; its probability weighs the criteria")
-    for column in ("object", "grasps", "prob.", "angle", "place", "centre", "sure", "mm"):
-        table.add_column(column, justify="left" if column == "object" else "right", no_wrap=True)
+    texts = ("object", "type") if typed else ("object",)
+    for column in (*texts, "grasps", "prob.", "angle", "place", "centre", "sure", "mm"):
+        table.add_column(column, justify="left" if column in texts else "right", no_wrap=True)
     for row in rows:
-        name, count = printable(row["name"]), str(len(row["grasps"]))
-        if not row["grasps"]:
-            table.add_row(name, count, *["-"] * (2 + len(_SHARES)))
-            continue
-        best = row["grasps"][0]
-        shares = [f"{best['criteria'][share]:.2f}" for share in _SHARES]
-        table.add_row(name, count, f"{best['probability']:.2f}", *shares, f"{1e3 * best['opening']:.0f}")
+        best = row["grasps"][0] if row["grasps"] else {}
+        cells = [printable(row["name"])] + [printable(best.get("type", "-"))] * typed + [str(len(row["grasps"]))]
+        if best:
+            cells.append(f"{best['probability']:.2f}")
+            cells += [f"{best['criteria'][share]:.2f}" for share in _SHARES] + [f"{1e3 * best['opening']:.0f}"]
+        else:
+            cells += ["-"] * (2 + len(_SHARES))
+        table.add_row(*cells)
     console.print(table)
     for row in rows:
         console.print(printable(f"{row['name']}: {row['summary']}{_lost(row)}"), markup=False, soft_wrap=True)

@@ -22,6 +22,7 @@ from ..scan import (
     integrate_frames,
     mean_up,
     objects_on_plane,
+    occupancy_of,
     read_scan,
     scan_to_dict,
     write_ply,
@@ -35,11 +36,13 @@ from .output_folder import LIST, OutputFolder
 
 MAP = "map.sdf"
 PARTIAL = "partial_*.sdf"
+OCTREE = "occupancy.bt"
 SCAN_FILES = (
-    *(MAP, PARTIAL, PROGRESS_FILE, "mesh.ply", "objects.json", "report.html", LIST),
+    *(MAP, PARTIAL, PROGRESS_FILE, "mesh.ply", "objects.json", OCTREE, "report.html", LIST),
     *("surface.png", "objects.png", "sensors.png"),
 )
 CHECKPOINT_SECONDS = 5.0
+_OPTIONS = ("voxel", "truncation", "max_memory", "outlier_gate", "register")
 _MOST_LINES = 10
 
 
@@ -67,15 +70,17 @@ def _begin(arguments: argparse.Namespace, frames: FrameFolder, folder: OutputFol
     """A new map, or that of an earlier run with the same options."""
     path = folder.path / PROGRESS_FILE
     if arguments.start_over or not path.exists():
-        return Scan.begin(choose_options(frames, arguments.voxel, arguments.truncation, arguments.max_memory))
+        chosen = {name: getattr(arguments, name) for name in _OPTIONS}
+        return Scan.begin(choose_options(frames, **chosen))
     scan = read_scan(path)
     for name, was in asdict(scan.options).items():
         now = getattr(arguments, name)
         if now is not None and now != was:
             flag = "--" + name.replace("_", "-")
             unit = 1e6 if name == "max_memory" else 1.0
+            given, before = (f"{flag} {now / unit:g}", f"{was / unit:g}") if flag != "--register" else (flag, "none")
             raise InvalidInput(
-                f"{flag} {now / unit:g}: the map in {printable(str(arguments.out))} was made with {was / unit:g}: "
+                f"{given}: the map in {printable(str(arguments.out))} was made with {before}: "
                 f"leave {flag} out to go on with it, or make it anew with --start-over"
             )
     return scan
@@ -116,10 +121,13 @@ def _write(
     report("objects", 0.0)
     found, objects = _objects(scan, frames, arguments.up, points, vertex_normals(points, triangles), sigmas)
     summary = scan_summary(scan, frames, sigmas, objects)
+    octree = None if arguments.octree is None else occupancy_of(frames, scan, arguments.octree, report)
     report("writing", 0.0)
     with folder.illustrated() as draft:
         write_ply(draft / "mesh.ply", points, triangles, sigmas)
         write_file(draft / "objects.json", json.dumps(objects, indent=1, allow_nan=False) + "\n")
+        if octree is not None:
+            octree.save(draft / OCTREE)
         if not arguments.no_pictures:
             from ..viz.scan_pictures import write_scan_pictures
 

@@ -28,11 +28,14 @@ _MAPS = (
     "cpp/include/mmgrasp/mapping/probabilistic_sdf.hpp",
 )  # fmt: skip
 _SYNTHESIS = (
-    *_MAPS, "cpp/src/grasp/success", "cpp/src/grasp/synthesis", "cpp/include/mmgrasp/grasp/contact_patch.hpp",
+    *_MAPS, "cpp/src/grasp/hand/hand_model.cpp", "cpp/src/grasp/success", "cpp/src/grasp/synthesis",
+    "cpp/include/mmgrasp/grasp/contact_patch.hpp",
     "cpp/include/mmgrasp/grasp/success_model.hpp", "cpp/include/mmgrasp/grasp/surface_draws.hpp",
     "cpp/include/mmgrasp/grasp/synthesize_grasps.hpp", "python/mmgrasp/reproduce/grasp_success.py",
 )  # fmt: skip
-_SURFACES = (*_SYNTHESIS, "python/mmgrasp/reproduce/uncertain_surfaces.py")
+_SURFACES = (
+    *_SYNTHESIS, "python/mmgrasp/reproduce/surface_view.py", "python/mmgrasp/reproduce/uncertain_surfaces.py",
+)  # fmt: skip
 _TRIALS = (
     *_SYNTHESIS, "cpp/src/mapping/height_map.cpp", "cpp/src/grasp/graspability",
     "cpp/include/mmgrasp/grasp/graspability.hpp",

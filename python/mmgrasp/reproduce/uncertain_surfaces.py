@@ -11,6 +11,7 @@ from .._core import Box, Capsule, Cylinder, LinkShape, Sphere
 from .drawing import figure
 from .entry import Context, Entry, Result
 from .grasp_success import gripper, looking_at
+from .surface_view import draw_surface, seen_surface
 from .unknown_objects import CAUTIOUS
 
 if TYPE_CHECKING:
@@ -39,6 +40,8 @@ NOISES = (0.0, 0.01, 0.02, 0.03)
 REACH = (
     0.09  # the bunny reaches no farther along and across [m]; beyond it ripples of a noisy table are higher than 1 cm
 )
+MIDDLE = np.array([0.0, 0.0, 0.045])
+BUNNY_EYE = MIDDLE + 0.42 * np.array([np.cos(0.45) * np.cos(-1.1), np.cos(0.45) * np.sin(-1.1), np.sin(0.45)])
 LEAST_SIGMA = 0.0005  # told to the map of noise-free frames
 CRITERIA_NOISE = 0.001
 CRITERIA = ("angle", "placement", "centring", "certainty")
@@ -84,9 +87,12 @@ def measure_noise(noise: float, frames: int, seed: int) -> dict[str, Any]:
         "pose": None,
         "probability": None,
     }
+    pads: list[list[float]] = []
     if found.grasps:
         out["pose"] = found.grasps[0].T_object_hand.tolist()
         out["probability"] = found.grasps[0].quality
+        pads = [patch.point.tolist() for patch in found.ratings[0].patches]
+    out["view"] = seen_surface(sdf, looking_at(BUNNY_EYE, MIDDLE), max(3.0 * out["sigma"], 1e-4), pads)
     return out
 
 
@@ -141,6 +147,7 @@ def run_noise(context: Context) -> Result:
         "('sigmas kept free'): a grasp with 0 is one of a surface that is not known, whatever its probability says."
     )
     result.notes += [f"{100 * item['noise']:g} cm: {ours['why']}" for item, ours in zip(items, found, strict=True)]
+    result.drawing["views"] = [each["view"] for each in found]
     result.notes.append(
         "P3 prints pictures, no numbers; its object is a bunny, ours a body, head, tail and two ears of capsules and balls."
     )
@@ -148,20 +155,26 @@ def run_noise(context: Context) -> Result:
 
 
 def draw_noise(result: dict[str, Any]) -> Figure:
-    fig, axes = figure(9.0, 3.4, columns=2)
+    fig, axes = figure(11.0, 6.4, columns=4, rows=2)
     noise = [row["key"]["noise of a depth [cm]"] for row in result["rows"]]
+    for axis, view, each in zip(axes, result["drawing"]["views"], noise, strict=False):
+        scale = draw_surface(axis, view, f"{each:g} cm" + ("" if view["points"] else ": no grasp"))
+        fig.colorbar(scale, ax=axis, shrink=0.5, label="sigma [mm]")
+    for unused in axes[5], axes[7]:
+        unused.set_visible(False)
     for column in ("sigma of the surface, median [mm]", "error of the surface, median [mm]"):
-        axes[0].plot(noise, [row["values"][column]["ours"] for row in result["rows"]], marker="o", label=column)
-    axes[0].set(xlabel="noise of a depth [cm]", ylabel="[mm]", ylim=(0, None))
-    axes[0].legend(frameon=False, loc="upper left")
-    axes[1].bar(noise, [row["values"]["probability"]["ours"] or 0 for row in result["rows"]], width=0.5)
-    axes[1].set(xlabel="noise of a depth [cm]", ylabel="probability of the best grasp (0: none)", ylim=(0, 1))
+        axes[4].plot(noise, [row["values"][column]["ours"] for row in result["rows"]], marker="o", label=column)
+    axes[4].set(xlabel="noise of a depth [cm]", ylabel="[mm]", ylim=(0, None))
+    axes[4].legend(frameon=False, loc="upper left", fontsize=7)
+    axes[6].bar(noise, [row["values"]["probability"]["ours"] or 0 for row in result["rows"]], width=0.5)
+    axes[6].set(xlabel="noise of a depth [cm]", ylabel="probability of the best grasp (0: none)", ylim=(0, 1))
     return fig
 
 
 # --- figures 4.17 and 4.18 --------------------------------------------------------------------------------------------
 FROM_ABOVE = 9  # frames before the camera goes to the sides, as P3's first nine seconds
 NOISE = 0.002
+CAR_EYE = MIDDLE + 0.42 * np.array([np.cos(0.5) * np.cos(-1.0), np.cos(0.5) * np.sin(-1.0), np.sin(0.5)])
 
 
 def car_points(count: int, seed: int) -> dict[str, np.ndarray]:
@@ -183,7 +196,7 @@ def measure_views(frames: int, seed: int) -> dict[str, Any]:
     sdf = _core.ProbabilisticSdf(voxel=0.002, truncation=0.010, threads=1)
     camera = _core.DepthCamera(INTRINSICS, _core.DepthNoise(constant=NOISE))
     places = car_points(400, seed)
-    out: dict[str, Any] = {name: [] for name in places}
+    out: dict[str, Any] = {name: [] for name in (*places, "views")}
     for k in range(frames):
         up = np.radians(80 if k < FROM_ABOVE else 25)
         sdf.integrate(seen(CAR, 2.4 * k, up, NOISE, rng), camera)
@@ -192,6 +205,9 @@ def measure_views(frames: int, seed: int) -> dict[str, Any]:
             out[name].append(
                 {"known": float(known.mean()), "sigma": float(np.median(sigma[known])) if known.any() else None}
             )
+        if k + 1 in (1, FROM_ABOVE, frames):
+            view = seen_surface(sdf, looking_at(CAR_EYE, MIDDLE), NOISE, [])
+            out["views"].append({"frames": k + 1, **view})
     return out
 
 
@@ -212,19 +228,28 @@ def run_views(context: Context) -> Result:
     )
     result.trend("meanwhile the region of the wheels stays uncertain or unknown", found["wheels"][last]["known"] < 0.5)
     result.trend("views from the side make it known", found["wheels"][-1]["known"] > 0.8)
+    result.drawing["views"] = found["views"]
     result.notes.append("P3 prints pictures and a bar chart of frames over time, no numbers of uncertainty.")
     return result
 
 
 def draw_views(result: dict[str, Any]) -> Figure:
-    fig, axes = figure(9.0, 3.4, columns=2)
+    views = result["drawing"]["views"]
+    fig, axes = figure(10.0, 6.0, columns=3, rows=2)
+    for axis, view in zip(axes, views, strict=False):
+        many = "1 frame" if view["frames"] == 1 else f"{view['frames']} frames"
+        side = "from above" if view["frames"] <= FROM_ABOVE else "then from the side"
+        scale = draw_surface(axis, view, f"{many}, {side}")
+    fig.colorbar(scale, ax=axes[:3], shrink=0.6, label="sigma [mm]")
+    axes[5].set_visible(False)
     frames = [row["key"]["frames"] for row in result["rows"]]
-    for axis, what in zip(axes, ("known [%]", "sigma [mm]"), strict=True):
+    for axis, what in zip(axes[3:5], ("known [%]", "sigma [mm]"), strict=True):
         for name in ("roof", "wheels"):
             values = [row["values"][f"{name}, {what}"]["ours"] for row in result["rows"]]
             axis.plot(frames, [np.nan if v is None else v for v in values], marker=".", label=name)
         axis.axvline(FROM_ABOVE + 0.5, color="0.6", linewidth=1)
         axis.set(xlabel="frames (the line: from above, then from the side)", ylabel=what, ylim=(0, None))
+        axis.xaxis.label.set_size(8)
         axis.legend(frameon=False)
     return fig
 

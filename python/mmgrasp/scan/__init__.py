@@ -6,6 +6,7 @@ from .integration import ScanOptions as ScanOptions
 from .integration import SkippedFrame as SkippedFrame
 from .integration import choose_options as choose_options
 from .integration import integrate_frames as integrate_frames
+from .integration import occupancy_of as occupancy_of
 from .objects import Segmentation as Segmentation
 from .objects import SegmentedObject as SegmentedObject
 from .objects import mean_up as mean_up

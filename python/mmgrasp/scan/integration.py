@@ -10,7 +10,16 @@ from typing import Any
 import numpy as np
 
 from .._argument_errors import checked
-from .._core import DepthImage, Error, IntegrationReport, InvalidInput, ProbabilisticSdf, _sdf_option_table
+from .._core import (
+    DepthImage,
+    Error,
+    IntegrationReport,
+    InvalidInput,
+    OccupancyMap,
+    ProbabilisticSdf,
+    _sdf_option_table,
+    register_frame,
+)
 from .._progress import Progress
 from ..frames import Frame, FrameFolder, LoadedFrame
 from ..frames.frame import frame_bytes
@@ -32,10 +41,18 @@ class ScanOptions:
     voxel: float
     truncation: float
     max_memory: float
+    outlier_gate: float = 0.0
+    register: bool = False
+    """Each frame is moved onto the map before it is integrated, as far as its sensor's pose_error allows."""
 
     def new_map(self) -> ProbabilisticSdf:
         """An empty map with these options."""
-        return ProbabilisticSdf(voxel=self.voxel, truncation=self.truncation, max_memory=self.max_memory)
+        return ProbabilisticSdf(
+            voxel=self.voxel,
+            truncation=self.truncation,
+            max_memory=self.max_memory,
+            outlier_gate=self.outlier_gate,
+        )
 
 
 @dataclass(frozen=True)
@@ -130,6 +147,24 @@ def integrate_frames(
     return added
 
 
+@checked
+def occupancy_of(folder: FrameFolder, scan: Scan, resolution: float, progress: Progress = None) -> OccupancyMap:
+    """An octree of free, occupied and unknown cells of `resolution` [m], from the frames in a scan's map at the poses they have there.
+
+    Raises InvalidInput when one of them can no longer be read.
+    """
+    out = OccupancyMap(resolution=resolution)
+    by_name = {frame.name: frame for frame in folder.frames}
+    for i, record in enumerate(scan.frames):
+        if progress:
+            progress("octree", i / len(scan.frames))
+        if record.name not in by_name:
+            raise InvalidInput(f"{record.name}: is in the map, but no longer in the folder: an octree needs all frames")
+        loaded = folder.read(by_name[record.name])
+        out.integrate(DepthImage(loaded.image.depth, loaded.image.camera, record.T_world_camera), loaded.camera)
+    return out
+
+
 def every_nth(frames: list[Frame], every: int) -> list[Frame]:
     """Every nth of each sensor, the first one included."""
     counts: dict[str, int] = {}
@@ -144,7 +179,12 @@ def every_nth(frames: list[Frame], every: int) -> list[Frame]:
 
 @checked
 def choose_options(
-    folder: FrameFolder, voxel: float | None, truncation: float | None, max_memory: float | None
+    folder: FrameFolder,
+    voxel: float | None,
+    truncation: float | None,
+    max_memory: float | None,
+    outlier_gate: float | None = None,
+    register: bool | None = None,
 ) -> ScanOptions:
     """Options as given; the others from the first frame that can be read.
 
@@ -166,7 +206,8 @@ def choose_options(
                 truncation = min(wanted, 50 * voxel)
     voxel = voxel or DEFAULTS["voxel"]
     truncation = truncation or voxel * DEFAULTS["truncation"] / DEFAULTS["voxel"]
-    return ScanOptions(voxel, round(truncation, 9), max_memory or DEFAULTS["max_memory"])
+    memory, gate = max_memory or DEFAULTS["max_memory"], outlier_gate or DEFAULTS["outlier_gate"]
+    return ScanOptions(voxel, round(truncation, 9), memory, gate, bool(register))
 
 
 def _whole_mm(length: float) -> float:
@@ -194,13 +235,34 @@ def _depths(image: DepthImage, nearest: float, farthest: float) -> tuple[float, 
 def _add(folder: FrameFolder, scan: Scan, frame: Frame) -> FrameRecord:
     content = frame_bytes(frame)
     loaded = folder.read(frame, content)
+    unregistered = ""
+    if scan.options.register:
+        loaded, unregistered = _registered(scan.sdf, loaded, folder.sensors[loaded.camera.name])
     report = scan.sdf.integrate(loaded.image, loaded.camera, pose_covariance=loaded.pose_covariance, sigma=loaded.sigma)
     sensor = loaded.camera.name
     scan.sensors.setdefault(sensor, described(folder, folder.sensors[sensor]))
-    return _record(frame.name, sensor, content.digest, loaded.image, report)
+    return _record(frame.name, sensor, content.digest, loaded.image, report, unregistered)
 
 
-def _record(name: str, sensor: str, digest: str, image: DepthImage, report: IntegrationReport) -> FrameRecord:
+def _registered(sdf: ProbabilisticSdf, loaded: LoadedFrame, sensor: Sensor) -> tuple[LoadedFrame, str]:
+    """The frame moved onto the map, or as it was and why it was not moved."""
+    if loaded.pose_covariance is None:
+        raise InvalidInput(f"{sensor.shown} has no pose_error: --register moves a pose as far as that says")
+    if not sdf.frames:
+        return loaded, ""
+    image = loaded.image
+    found = register_frame(
+        sdf, image, loaded.camera, pose_covariance=loaded.pose_covariance, sigma=loaded.sigma
+    )
+    if found.reason:
+        return loaded, f"not registered: {found.reason}"
+    moved = DepthImage(image.depth, image.camera, found.T_world_camera)
+    return LoadedFrame(moved, loaded.camera, loaded.sigma, found.covariance), ""
+
+
+def _record(
+    name: str, sensor: str, digest: str, image: DepthImage, report: IntegrationReport, unregistered: str
+) -> FrameRecord:
     return FrameRecord(
         name,
         sensor,
@@ -214,7 +276,7 @@ def _record(name: str, sensor: str, digest: str, image: DepthImage, report: Inte
         report.without_normal,
         report.new_blocks,
         None if math.isnan(report.agreement) else report.agreement,
-        report.warning,
+        "; ".join(filter(None, (unregistered, report.warning))),
     )
 
 

@@ -53,14 +53,18 @@ def read_scan(path: Path) -> Scan:
         root["version"].fail(f"this version of mmgrasp reads version {VERSION}: {_AGAIN}")
     root.mapping("format version mmgrasp map options sensors frames skipped")
     root["mmgrasp"].string()
-    options = root["options"].mapping("voxel truncation max_memory")
-    values = [options["voxel"].number(above=0), options["truncation"].number(above=0)]
-    values.append(options["max_memory"].number(above=0, most=LARGEST_MEMORY))
+    options = root["options"].mapping("voxel truncation max_memory", "outlier_gate register")
+    values: dict[str, Any] = {key: options[key].number(above=0) for key in ("voxel", "truncation")}
+    values["max_memory"] = options["max_memory"].number(above=0, most=LARGEST_MEMORY)
+    if "outlier_gate" in options:
+        values["outlier_gate"] = options["outlier_gate"].number(least=0)
+    if "register" in options:
+        values["register"] = options["register"].boolean()
     name = root["map"].string()
     if "/" in name or not name.endswith(".sdf"):
         root["map"].fail("must be a file in the same folder")
     scan = Scan(
-        ScanOptions(*values),
+        ScanOptions(**values),
         _read_map(path.parent / name),
         [_record(node, FrameRecord) for node in root["frames"].elements()],
         [_record(node, SkippedFrame) for node in root["skipped"].elements()],

@@ -20,9 +20,11 @@ def read_hand(node: Node, robot: Robot, tool_link: str) -> Hand:
         node.mapping("approach suction cup_links", "payload")
         for link in node["cup_links"].elements():
             check_link(robot, link)
-        return read_cups(node, robot, tool_link, _axes(node)["approach"], payload)
+        return read_cups(node, robot, tool_link, read_axes(node)["approach"], payload)
     if "from_robot" in node:
         return _gripper_from_robot(node, robot, tool_link, payload)
+    if "groups" in node:
+        node["groups"].fail("a hand of several groups of joints: `mmgrasp grasp` seeks grasps for it, all else needs two fingers")
     node.mapping(
         "approach closing max_opening finger_depth finger_width joints finger_links", "clearance closing_speed payload"
     )
@@ -46,7 +48,7 @@ def read_hand(node: Node, robot: Robot, tool_link: str) -> Hand:
     sizes: dict[str, Any] = {key: node[key].number(above=0) for key in ("max_opening", "finger_depth", "finger_width")}
     if "clearance" in node:
         sizes["clearance"] = node["clearance"].number(least=0)
-    axes = _axes(node)
+    axes = read_axes(node)
     with node.blamed():
         hand = Hand(
             tool_link,
@@ -98,7 +100,7 @@ def _middle(robot: Robot, link: str) -> np.ndarray:
     return np.mean(places, axis=0) if places else np.array([0.0, 0.0, 0.0, 1.0])
 
 
-def _axes(node: Node) -> dict[str, Any]:
+def read_axes(node: Node) -> dict[str, Any]:
     """The axes `approach` and `closing` of the tool frame, as far as they are given."""
     axes: dict[str, Any] = {}
     for key in ("approach", "closing"):
@@ -118,7 +120,7 @@ def _gripper_from_robot(node: Node, robot: Robot, tool_link: str, payload: float
     source = node.mapping("from_robot", "approach closing clearance closing_speed payload")["from_robot"]
     if source.raw is not True and not isinstance(source.raw, str):
         source.fail("must be an SRDF end effector or group, or true: every joint below the tool frame's body")
-    stated = _axes(node)
+    stated = read_axes(node)
     if "clearance" in node:
         stated["clearance"] = node["clearance"].number(least=0)
     try:

@@ -24,7 +24,8 @@ from .._files import ASSETS, shipped
 from .._progress import Progress
 from ..documents.reading import RENAMED, Node, near_miss, read_yaml
 from .closed_fingers import fingers_may_meet, held_links_may_meet
-from .gripper_section import check_finger_travel, read_hand
+from .grasp_types import HandTypes, opened, read_grasp_types
+from .gripper_section import check_finger_travel, read_axes, read_hand
 from .robot_names import check_link, joint_value
 from .shapes import read_shapes
 from .wheels import limits_of_wheels
@@ -98,15 +99,16 @@ def robot_data_folder(node: Node) -> Path:
     node.fail("needs the robots of example-robot-data: pip install 'mmgrasp[robots]'")
 
 
-def profile_path(name: str) -> Path:
-    """A robot profile by name (shipped) or by path."""
+def profile_path(name: str, folders: tuple[str, ...] = ("robots",)) -> Path:
+    """A robot profile by name (one shipped in these folders of the assets) or by path."""
     path = Path(name)
     if path.suffix in (".yaml", ".yml"):
         return path
-    known = sorted(p.stem for p in (ASSETS / "robots").glob("*/*.yaml") if p.stem == p.parent.name)
+    shipped_ones = [p for folder in folders for p in (ASSETS / folder).glob("*/*.yaml") if p.stem == p.parent.name]
+    known = {p.stem: p for p in sorted(shipped_ones)}
     if name not in known:
-        raise InvalidInput(f"robot name = {name!r}: no such robot{near_miss(name, known)}")
-    return ASSETS / "robots" / name / f"{name}.yaml"
+        raise InvalidInput(f"robot name = {name!r}: no such robot{near_miss(name, list(known))}")
+    return known[name]
 
 
 def choose_sections(root: Node, robot_name: str | None) -> RobotSections:
@@ -163,8 +165,32 @@ def read_arm_of(source: str, progress: Progress = None) -> ArmSetup:
     return _arm_setup(sections.robot, sections.gripper, progress)
 
 
+@checked
+def read_hand_types(source: str, *, arm: bool = False, progress: Progress = None) -> HandTypes:
+    """A gripper by its types of grasp, with `arm` also the arm that carries it; named and refused as in read_gripper()."""
+    sections = _sections_of(source)
+    if "groups" not in sections.gripper:
+        if not arm:
+            return HandTypes({"": read_gripper(source)})
+        setup = _arm_setup(sections.robot, sections.gripper, progress)
+        return HandTypes({"": setup.gripper}, arms={"": setup.arm})
+    node = sections.robot.mapping("urdf tool_link group" if arm else "urdf tool_link", f"group home {ROBOT_KEYS}")
+    robot = compose(node)
+    tool_link = node["tool_link"].string()
+    check_link(robot, node["tool_link"])
+    hand = sections.gripper.mapping("approach groups types")
+    types = read_grasp_types(hand, robot, tool_link, read_axes(hand)["approach"])
+    if not arm:
+        return HandTypes(types, robot)
+    robot = _core.with_sampled_pairs(robot, progress=progress)
+    other = {name: joint_value(robot, name, value) for name, value in _named_numbers(node, "joints")}
+    group = _arm_of(robot, node["group"], _read_group(robot, node["group"], tool_link))
+    arms = {kind: group.with_reference({**other, **opened(made)}) for kind, made in types.items()}
+    return HandTypes(types, robot, arms)
+
+
 def _sections_of(source: str) -> RobotSections:
-    path = shipped(source) if source.startswith("asset:") else profile_path(source)
+    path = shipped(source) if source.startswith("asset:") else profile_path(source, ("robots", "grippers"))
     root = read_yaml(path).root
     return choose_sections(root, None) if "trays" in root else _profile_sections(root)
 

@@ -55,9 +55,13 @@ MMGRASP_EXPORT std::vector<int> opposed_sides(const std::vector<Eigen::Vector3d>
 
 /// Two virtual fingers: the pads of either of opposed_sides() (Arbib et al. 1985).
 struct MMGRASP_EXPORT ClosingLine {
-  Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< Between the mean pads of either side, in the tool frame [m].
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitY();   ///< From the first side to the other, a unit vector.
-  double opening = 0;  ///< Distance of the two sides along the axis [m]; negative once they passed each other.
+  /// On the line through the mean pads' middle, as far from either side by the ways along which its pads push, in the
+  /// tool frame [m].
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitY();  ///< From the first side to the other, a unit vector.
+  /// The sum of both sides' mean ways to the middle [m]: the distance of two parallel pads, the diameter of a ball
+  /// between fingers all around; negative once they passed each other.
+  double opening = 0;
 };
 MMGRASP_EXPORT ClosingLine closing_line(const std::vector<FingerPad>& pads);
 

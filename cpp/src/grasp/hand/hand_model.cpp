@@ -79,10 +79,17 @@ ClosingLine closing_line(const std::vector<FingerPad>& pads) {
   require(count[0] > 0 && count[1] > 0, "pads", std::to_string(pads.size()),
           "no fingertip pushes against the first one");
   ClosingLine line;
-  const Vector3d a = place[0] / count[0], b = place[1] / count[1];
   line.axis = (push[0].normalized() - push[1].normalized()).normalized();
-  line.middle = (a + b) / 2;
-  line.opening = (b - a).dot(line.axis);
+  line.middle = (place[0] / count[0] + place[1] / count[1]) / 2;
+  double way[2] = {0, 0}, rate[2] = {0, 0};  // from the pads to the middle along their pushes, and how it grows
+  for (std::size_t k = 0; k < pads.size(); ++k) {
+    way[sides[k]] += (line.middle - pads[k].T_hand_pad.translation()).dot(pushes[k]) / count[sides[k]];
+    rate[sides[k]] += line.axis.dot(pushes[k]) / count[sides[k]];
+  }
+  // Three fingers around a ball: the mean pad of two of them is nearer to the middle than either.
+  const double shift = (way[1] - way[0]) / (rate[0] - rate[1]);
+  line.middle += shift * line.axis;
+  line.opening = way[0] + way[1] + shift * (rate[0] + rate[1]);
   return line;
 }
 

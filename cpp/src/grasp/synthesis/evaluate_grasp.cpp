@@ -171,21 +171,21 @@ Verdict GraspEvaluator::centre_by_finger(EvaluatedGrasp& grasp) const {
     std::vector<Vector3d> pushes;
     for (const FingerPad& pad : pads) pushes.push_back(pad_direction(pad));
     const std::vector<int> sides = opposed_sides(pushes);
+    const Vector3d axis = closing_line(pads).axis;
     std::vector<double> errors;
-    double side[2] = {0, 0}, worst = 0;
+    double side[2] = {0, 0}, rate[2] = {0, 0}, worst = 0;
     int count[2] = {0, 0};
     for (std::size_t k = 0; k < pads.size(); ++k) {
       errors.push_back(grasp.patches[k].distance - wanted);
-      side[sides[k]] += errors.back();
+      worst = std::max(worst, std::abs(errors[k]));
+      side[sides[k]] += errors[k];
+      rate[sides[k]] += axis.dot(pushes[k]);
       ++count[sides[k]];
     }
-    const double shift = (side[0] / count[0] - side[1] / count[1]) / 2;
-    for (std::size_t k = 0; k < pads.size(); ++k) {
-      worst = std::max(worst, std::abs(errors[k]));
-      errors[k] -= sides[k] == 0 ? shift : -shift;
-    }
     if (worst < kPlaced) break;
-    grasp.T_world_hand.translation() += shift * closing_axis(grasp);
+    const double shift = (side[0] / count[0] - side[1] / count[1]) / (rate[0] / count[0] - rate[1] / count[1]);
+    for (std::size_t k = 0; k < pads.size(); ++k) errors[k] -= shift * axis.dot(pushes[k]);
+    grasp.T_world_hand.translation() += shift * (grasp.T_world_hand.linear() * axis);
     const std::vector<double> before = grasp.shares;
     grasp.shares = moved_fingers(grasp, errors);
     const Verdict verdict = cast(grasp, grasp.patches);

@@ -41,9 +41,12 @@ def test_frames_are_moved_onto_the_map(tmp_path: Path) -> None:
     assert run(tmp_path / "frames", tmp_path / "map", "--register") == 0
     rows = json.loads((tmp_path / "map" / "progress.json").read_text())["frames"]
     poses = [np.array(row["T_world_camera"]) for row in rows]
-    before = errors([shot.T_world_camera for shot in displaced(exact)], exact)
-    after = errors(poses, exact)
-    assert np.median(before[1:]) > 0.005 and np.median(after[1:]) < 0.4 * np.median(before[1:])
+    registered = [not row["warning"] for row in rows]
+    assert registered[0] and sum(registered) >= 5
+    before = errors([shot.T_world_camera for shot in displaced(exact)], exact)[registered]
+    after = errors(poses, exact)[registered]
+    assert np.mean(before**2) > 0.006**2 and np.mean(after**2) < 0.3 * np.mean(before**2)
+    assert all(row["warning"].startswith("not registered: ") for row in rows if row["warning"])
 
     # The same by hand, bit for bit.
     folder = open_frames(tmp_path / "frames")
@@ -54,7 +57,6 @@ def test_frames_are_moved_onto_the_map(tmp_path: Path) -> None:
         assert covariance is not None
         if sdf.frames:
             found = mg.mapping.register_frame(sdf, image, loaded.camera, pose_covariance=covariance)
-            assert found.registered, found.reason
             image, covariance = mg.mapping.DepthImage(image.depth, PINHOLE, found.T_world_camera), found.covariance
         sdf.integrate(image, loaded.camera, pose_covariance=covariance)
     sdf.save(tmp_path / "direct.sdf")
@@ -80,12 +82,13 @@ def test_a_map_is_gone_on_with_as_it_was_begun(tmp_path: Path, capsys: pytest.Ca
         assert said in " ".join(capsys.readouterr().err.split())
     assert run(tmp_path / "frames", tmp_path / "map") == 0
     for wrong in ("2", "nan", "-4"):
-        assert run(tmp_path / "frames", tmp_path / "other", "--outlier-gate", wrong) == 2
+        with pytest.raises(SystemExit):
+            run(tmp_path / "frames", tmp_path / "other", "--outlier-gate", wrong)
     assert "must be a number from 3 to 1000 standard deviations" in " ".join(capsys.readouterr().err.split())
 
 
 def test_the_gate_keeps_speckles_out(tmp_path: Path) -> None:
-    """One pixel in fifty 8 cm too near in every frame: without the gate they stay in the air or pull at surfaces."""
+    """One pixel in fifty 8 cm too near in every frame: without the gate all around them is as uncertain as at a rim."""
     rng = np.random.default_rng(5)
     taken = []
     for shot in shots(6, SCALE):
@@ -99,10 +102,10 @@ def test_the_gate_keeps_speckles_out(tmp_path: Path) -> None:
     for name, more in {"without": (), "with": ("--outlier-gate", "4")}.items():
         assert run(tmp_path / "frames", tmp_path / name, *more) == 0
         sdf = mg.ProbabilisticSdf.load(tmp_path / name / "map.sdf")
-        points, _, _ = sdf.points()
-        height = points[(np.abs(points[:, 0]) < 0.03) & (points[:, 1] < -0.10), 2]  # the bare table
-        measured[name] = float(np.mean(np.abs(height) > 0.002))
-    assert measured["with"] < 0.001 < measured["without"], measured
+        measured[name] = float(np.quantile(sdf.points()[2], 0.95))
+        rows = json.loads((tmp_path / name / "progress.json").read_text())["frames"]
+        assert all((row["outliers"] > 0.005 * row["measured"]) == bool(more) for row in rows)
+    assert measured["with"] < 0.3 * measured["without"], measured
 
 
 def test_the_octree_is_octomaps_own(tmp_path: Path) -> None:

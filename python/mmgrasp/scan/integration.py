@@ -72,6 +72,8 @@ class FrameRecord:
     new_blocks: int
     agreement: float | None
     warning: str
+    outliers: int = 0
+    """Of 0 where no gate was asked for."""
 
 
 @dataclass(frozen=True)
@@ -251,9 +253,7 @@ def _registered(sdf: ProbabilisticSdf, loaded: LoadedFrame, sensor: Sensor) -> t
     if not sdf.frames:
         return loaded, ""
     image = loaded.image
-    found = register_frame(
-        sdf, image, loaded.camera, pose_covariance=loaded.pose_covariance, sigma=loaded.sigma
-    )
+    found = register_frame(sdf, image, loaded.camera, pose_covariance=loaded.pose_covariance, sigma=loaded.sigma)
     if found.reason:
         return loaded, f"not registered: {found.reason}"
     moved = DepthImage(image.depth, image.camera, found.T_world_camera)
@@ -277,6 +277,7 @@ def _record(
         report.new_blocks,
         None if math.isnan(report.agreement) else report.agreement,
         "; ".join(filter(None, (unregistered, report.warning))),
+        report.outliers,
     )
 
 

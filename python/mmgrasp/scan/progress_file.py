@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, fields
+from dataclasses import MISSING, asdict, fields
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -21,7 +21,7 @@ from .integration import FrameRecord, Scan, ScanOptions, SkippedFrame
 FORMAT, VERSION = "mmgrasp-scan", 1
 Row = TypeVar("Row", FrameRecord, SkippedFrame)
 LARGEST_MEMORY = 1e13  # [bytes], as the command's option
-_FATES = ("used", "out_of_range", "too_noisy", "too_slanted", "without_normal")
+_FATES = ("used", "out_of_range", "too_noisy", "too_slanted", "without_normal", "outliers")
 _AGAIN = "make the map anew with --start-over"
 
 
@@ -129,9 +129,12 @@ def _check_like(node: Node, example: Any) -> None:
 
 
 def _record(node: Node, kind: type[Row]) -> Row:
-    node.mapping(" ".join(f.name for f in fields(kind)))
-    values: dict[str, Any] = {}
+    optional = {f.name: f.default for f in fields(kind) if f.default is not MISSING}
+    node.mapping(" ".join(f.name for f in fields(kind) if f.name not in optional), " ".join(optional))
+    values: dict[str, Any] = dict(optional)
     for f in fields(kind):
+        if f.name not in node:
+            continue
         child = node[f.name]
         if f.type == "int":
             values[f.name] = child.integer(least=0)

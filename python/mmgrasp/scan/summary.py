@@ -10,7 +10,7 @@ import numpy as np
 from ..frames import FrameFolder
 from .integration import FrameRecord, Scan
 
-PIXELS = ("measured", "used", "out_of_range", "too_noisy", "too_slanted", "without_normal")
+PIXELS = ("measured", "used", "out_of_range", "too_noisy", "too_slanted", "without_normal", "outliers")
 
 
 def scan_summary(scan: Scan, folder: FrameFolder, sigmas: np.ndarray, objects: dict[str, Any]) -> dict[str, Any]:

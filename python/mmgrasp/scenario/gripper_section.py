@@ -24,7 +24,9 @@ def read_hand(node: Node, robot: Robot, tool_link: str) -> Hand:
     if "from_robot" in node:
         return _gripper_from_robot(node, robot, tool_link, payload)
     if "groups" in node:
-        node["groups"].fail("a hand of several groups of joints: `mmgrasp grasp` seeks grasps for it, all else needs two fingers")
+        node["groups"].fail(
+            "a hand of several groups of joints: `mmgrasp grasp` seeks grasps for it, all else needs two fingers"
+        )
     node.mapping(
         "approach closing max_opening finger_depth finger_width joints finger_links", "clearance closing_speed payload"
     )

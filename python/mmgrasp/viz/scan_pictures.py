@@ -25,6 +25,7 @@ CAUSES = (
     ("too_noisy", "too noisy", "#E69F00"),
     ("too_slanted", "seen too slanted", "#CC79A7"),
     ("without_normal", "at rims, no normal", "#56B4E9"),
+    ("outliers", "outliers", "#4D4A44"),
 )
 _EDGES = [(0, 1), (0, 2), (0, 4), (1, 3), (1, 5), (2, 3), (2, 6), (3, 7), (4, 5), (4, 6), (5, 7), (6, 7)]
 

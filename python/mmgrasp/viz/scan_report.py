@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from .._files import printable
+from ..scan.summary import PIXELS
 from .report import CSS, plural, table
 
 PICTURES = (
@@ -94,10 +95,7 @@ def _sensors(summary: dict[str, Any]) -> str:
     rows = []
     for row in summary["sensors"]:
         measured = max(row["measured"], 1)
-        shares = [
-            f"{100 * row[key] / measured:.1f} %"
-            for key in ("used", "out_of_range", "too_noisy", "too_slanted", "without_normal")
-        ]
+        shares = [f"{100 * row[key] / measured:.1f} %" for key in PIXELS[1:]]
         agreement = row["agreement"]
         agree = f"{100 * agreement['median']:.0f} % ({100 * agreement['least']:.0f} %)" if agreement else "-"
         rows.append([escape(row["name"]), str(row["frames"]), f"{row['measured']:,}", *shares, agree])
@@ -110,9 +108,10 @@ def _sensors(summary: dict[str, Any]) -> str:
         "too noisy",
         "too slanted",
         "no normal",
+        "outliers",
         "agreement (least)",
     ]
-    return "<h2>Sensors</h2>" + table(head, rows, set(range(1, 9)))
+    return "<h2>Sensors</h2>" + table(head, rows, set(range(1, 10)))
 
 
 def _skipped(summary: dict[str, Any]) -> str:

@@ -20,6 +20,14 @@ void answer(SdfSampler& sampler, const Eigen::Matrix3Xd& points, Eigen::Index i,
   out.known[i] = sample.known;
 }
 
+/// Fetches what is read and written of a point.
+void prefetch(const Eigen::Matrix3Xd& points, Eigen::Index i, const SdfValues& out) {
+  __builtin_prefetch(points.data() + 3 * i);
+  __builtin_prefetch(&out.mean[i], 1);
+  __builtin_prefetch(&out.sigma[i], 1);
+  __builtin_prefetch(&out.known[i], 1);
+}
+
 }  // namespace
 
 void query_points(const SdfGrid& grid, const Eigen::Matrix3Xd& points, Eigen::Index first, Eigen::Index last,
@@ -30,7 +38,7 @@ void query_points(const SdfGrid& grid, const Eigen::Matrix3Xd& points, Eigen::In
     for (Eigen::Index i = first; i < last; ++i) block[i - first] = sampler.block_at(points.col(i));
     const std::vector<int> order = block_order(block, static_cast<int>(grid.keys.size()));
     for (std::size_t k = 0; k < order.size(); ++k) {
-      if (k + kAhead < order.size()) __builtin_prefetch(points.data() + 3 * (first + order[k + kAhead]));
+      if (k + kAhead < order.size()) prefetch(points, first + order[k + kAhead], out);
       answer(sampler, points, first + order[k], out);
     }
     return;

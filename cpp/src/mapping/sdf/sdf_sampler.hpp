@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "mapping/sdf/block_neighbours.hpp"
+#include "mapping/sdf/cell_values.hpp"
 #include "mapping/sdf/sdf_grid.hpp"
 
 namespace mmgrasp::detail {
@@ -101,9 +102,12 @@ class SdfSampler {
   /// Means at the corners of a cell that are all known, its lowest corner the voxel with these indices; corner k lies
   /// beyond it along x, y, z by the bits of k.
   void corners(int x, int y, int z, float* mean) {
-    float weight[8];
+    CellValues means, weights;
     around_cell_.enter({x >> 3, y >> 3, z >> 3});
-    if (near_surface({x, y, z}, mean, weight) == Corners::near) return;
+    if (near_surface({x, y, z}, means, weights) == Corners::near) {
+      for (int k = 0; k < 8; ++k) mean[k] = means[k];
+      return;
+    }
     Node corner[8];
     bool near = false;
     for (int k = 0; k < 8; ++k) {
@@ -124,13 +128,12 @@ class SdfSampler {
     around_cell_.enter({cell[0] >> 3, cell[1] >> 3, cell[2] >> 3});
     const int block = around_cell_.index(0);
     const std::array<float, 3> correlation = block >= 0 ? grid_.correlation[block] : std::array<float, 3>{1, 1, 1};
-    float mean[8], weight[8];
+    CellValues mean, weight;
     switch (near_surface({cell[0], cell[1], cell[2]}, mean, weight)) {
       case Corners::unknown:
         return {};
       case Corners::near: {
-        float variance[8];
-        for (int k = 0; k < 8; ++k) variance[k] = 1 / weight[k];
+        const CellValues variance{1 / weight.low, 1 / weight.high};
         const float shared = systematic_ ? systematic_variance(cell, t) : 0;
         return {trilinear(mean, t), trilinear(variance, t) * kept(t, correlation) + shared, true};
       }
@@ -146,14 +149,6 @@ class SdfSampler {
     }
     if (near) bound_free_corners(corner);
     return interpolate(corner, t, correlation);
-  }
-
-  /// Interpolates the values at a cell's corners to a place in it, from (0, 0, 0) to (1, 1, 1).
-  static float trilinear(const float* v, const float* t) {
-    const float a = v[0] + t[0] * (v[1] - v[0]), b = v[2] + t[0] * (v[3] - v[2]), c = v[4] + t[0] * (v[5] - v[4]),
-                d = v[6] + t[0] * (v[7] - v[6]);
-    const float e = a + t[1] * (b - a), f = c + t[1] * (d - c);
-    return e + t[2] * (f - e);
   }
 
   /// Gradient of the mean by central differences over a voxel each way, a unit vector; zero where that leaves the
@@ -238,32 +233,36 @@ class SdfSampler {
 
   /// Means and weights of a cell's corners where all are near a surface of the only layer; mixed: ask for the nodes.
   /// The block of its lowest corner was entered.
-  Corners near_surface(const std::array<int, 3>& cell, float* mean, float* weight) {
+  Corners near_surface(const std::array<int, 3>& cell, CellValues& mean, CellValues& weight) {
     if (grid_.layers.size() != 1) return Corners::mixed;
     const int x = cell[0] & 7, y = cell[1] & 7, z = cell[2] & 7;
     const bool inside = x < 7 && y < 7 && z < 7;
     const VoxelBlock* const first = around_cell_.voxels(0);
     if (!first) return Corners::unknown;
     bool looked_through = first->looked_through;
-    for (int k = 0; k < 8; k += 2) {  // pairs along x share a row, or cross into the next block
-      const int v = y + (k >> 1 & 1), w = z + (k >> 2);
-      const VoxelBlock *low = first, *high = first;
+    // Pairs along x share a row, or cross into the next block.
+    const float *low[4], *high[4];
+    for (int pair = 0; pair < 4; ++pair) {
+      const int v = y + (pair & 1), w = z + (pair >> 1);
+      const VoxelBlock *here = first, *beside = first;
       if (!inside) {
         const int beyond = (v >> 3) << 1 | (w >> 3) << 2;
-        low = around_cell_.voxels(beyond);
-        high = x < 7 ? low : around_cell_.voxels(beyond | 1);
-        if (!low || !high) return Corners::unknown;
-        looked_through = looked_through || low->looked_through || high->looked_through;
+        here = around_cell_.voxels(beyond);
+        beside = x < 7 ? here : around_cell_.voxels(beyond | 1);
+        if (!here || !beside) return Corners::unknown;
+        looked_through = looked_through || here->looked_through || beside->looked_through;
       }
-      const int row = (w & 7) << 3 | (v & 7), next = (x + 1) & 7;
-      mean[k] = low->rows[row][x];
-      mean[k + 1] = high->rows[row][next];
-      weight[k] = low->rows[row][kBlockSide + x];
-      weight[k + 1] = high->rows[row][kBlockSide + next];
+      const int row = (w & 7) << 3 | (v & 7);
+      low[pair] = here->rows[row] + x;
+      high[pair] = beside->rows[row] + ((x + 1) & 7);
     }
-    float least = weight[0];
-    for (int k = 1; k < 8; ++k) least = std::min(least, weight[k]);
-    if (!(least > 0)) return Corners::unknown;
+    const auto values = [&](int at) {
+      return CellValues{Four{low[0][at], high[0][at], low[1][at], high[1][at]},
+                        Four{low[2][at], high[2][at], low[3][at], high[3][at]}};
+    };
+    mean = values(0);
+    weight = values(kBlockSide);
+    if (!all_positive(least_of(weight.low, weight.high))) return Corners::unknown;
     for (int k = 0; looked_through && k < 8; ++k) {
       if (!(mean[k] < 0)) continue;
       const VoxelBlock& voxels = inside ? *first : *around_cell_.voxels(block_of(x, y, z, k));
@@ -274,11 +273,12 @@ class SdfSampler {
 
   /// The systematic variance of the only layer, between the blocks of a cell's corners.
   float systematic_variance(const int* cell, const float* t) {
-    float of_corner[8];
+    CellValues shared;
     for (int k = 0; k < 8; ++k) {
-      of_corner[k] = around_cell_.voxels(block_of(cell[0], cell[1], cell[2], k))->systematic_variance();
+      const VoxelBlock* const block = around_cell_.voxels(block_of(cell[0], cell[1], cell[2], k));
+      (k < 4 ? shared.low : shared.high)[k & 3] = block->systematic_variance();
     }
-    return trilinear(of_corner, t);
+    return trilinear(shared, t);
   }
 
   /// The common case of direction(): one layer, all voxels around near a surface. Each is read once.
@@ -357,11 +357,11 @@ class SdfSampler {
   }
 
   static Sample interpolate(const Node* corner, const float* t, const std::array<float, 3>& correlation) {
-    float mean[8], variance[8], systematic[8];
+    CellValues mean, variance, systematic;
     for (int k = 0; k < 8; ++k) {
-      mean[k] = corner[k].mean;
-      variance[k] = corner[k].variance;
-      systematic[k] = corner[k].systematic;
+      (k < 4 ? mean.low : mean.high)[k & 3] = corner[k].mean;
+      (k < 4 ? variance.low : variance.high)[k & 3] = corner[k].variance;
+      (k < 4 ? systematic.low : systematic.high)[k & 3] = corner[k].systematic;
     }
     return {trilinear(mean, t), trilinear(variance, t) * kept(t, correlation) + trilinear(systematic, t), true};
   }

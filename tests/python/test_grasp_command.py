@@ -140,6 +140,17 @@ def test_a_gripper_too_narrow_for_everything_is_said(
         assert said and min(sides) - 0.004 < int(said[1]) / 1000 < max(sides) + 0.004, printed
 
 
+def test_less_room_around_uncertain_surfaces_is_offered(scanned: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """With 40 standard deviations kept free the hand fits nowhere; what is said helps."""
+    assert main(["grasp", str(scanned), "--gripper", GRIPPER, "--object", "object_1", "--sigmas", "40"]) == 4
+    said = re.search(r"; (\d+) would hold, but the hand touches the map within its sigmas", capsys.readouterr().out)
+    assert said and int(said[1]) > 20
+    (row,) = grasps(scanned, capsys, "--object", "object_1", "--sigmas", "0")["objects"]
+    assert row["grasps"]
+    with pytest.raises(SystemExit):
+        main(["grasp", str(scanned), "--gripper", GRIPPER, "--sigmas", "-1"])
+
+
 def test_out_of_the_arms_reach_is_said(scanned: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["grasp", str(scanned), "--robot", GRIPPER, "--base=-6,0,-0.7,0"]) == 4
     printed = " ".join(capsys.readouterr().out.split())

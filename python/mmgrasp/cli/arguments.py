@@ -254,6 +254,13 @@ def _add_grasp(commands: Commands) -> None:
         "--samples", type=_count(1, 100_000, "samples"), default=200, metavar="N", help="grasps tried for an object"
     )
     parser.add_argument(
+        "--sigmas",
+        type=_sigmas,
+        default=2.0,
+        metavar="K",
+        help="standard deviations of the surface that the hand keeps free around itself (default 2)",
+    )
+    parser.add_argument(
         "--grasps", type=_count(1, 1000, "grasps"), default=20, metavar="N", help="best kept of an object (default 20)"
     )
     parser.add_argument("--seed", type=_seed, default=1, metavar="N", help="same seed, same grasps")
@@ -457,6 +464,7 @@ _seed = _count(0, 2**31 - 1, "")
 
 _length = _Number(0, 1, "m")
 _voxel = _Number(1e-4, 10, "m")
+_sigmas = _Number(0, 100, "")
 _gate = _Number(3, 1000, "standard deviations")
 _megabytes = _Number(1, 1e7, "MB", scale=1e6)
 _coordinate = _Number(-1e6, 1e6, "m or rad")

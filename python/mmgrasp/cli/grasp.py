@@ -169,6 +169,7 @@ def _grasps_of(
             arm=arm,
             world=world,
             samples=arguments.samples,
+            sigmas=arguments.sigmas,
             seed=arguments.seed,
             max_grasps=arguments.grasps,
         )

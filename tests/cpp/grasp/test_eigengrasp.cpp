@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -102,6 +103,30 @@ TEST(Eigengrasp, PadsStandWhereTheirLinksAre) {
   EXPECT_NEAR(turn[0], 0, 1e-4);
   EXPECT_NEAR(std::abs(turn[1]), 120, 1e-4);
   EXPECT_NEAR(turn[1] + turn[2], 0, 1e-4);
+  // The pads are as far from the middle, where their pushes meet, as the ball between them has a radius: the roots lie on
+  // a circle of 66 mm / sqrt(3).
+  const ClosingLine line = closing_line(round->pads({1, 1, 1}));
+  EXPECT_NEAR(line.opening / 2, 0.066 / std::sqrt(3.0) + 0.0865 * std::sin(25 * kDegree) - 0.012, 1e-5);
+  for (const FingerPad& pad : round->pads({1, 1, 1})) {
+    const Vector3d way = line.middle - pad.T_hand_pad.translation(), push = pad.T_hand_pad.linear().col(2);
+    EXPECT_NEAR(way.dot(push), line.opening / 2, 1e-5);
+    EXPECT_LT(way.cross(push).norm(), 1e-5);
+  }
+}
+
+TEST(Eigengrasp, ClosingLineOfFingersThatDoNotPushStraight) {
+  // Pads on a circle of radius 3 around (5, 1, 2), pushing to its middle; the third closes at 90 degrees to the second.
+  const auto pad_at = [](double angle) {
+    const Vector3d in(-std::cos(angle), -std::sin(angle), 0);
+    FingerPad pad;
+    pad.T_hand_pad.linear() << Vector3d::UnitZ(), in.cross(Vector3d::UnitZ()), in;
+    pad.T_hand_pad.translation() = Vector3d(5, 1, 2) - 3 * in;
+    return pad;
+  };
+  const ClosingLine line = closing_line({pad_at(0), pad_at(135 * kDegree), pad_at(225 * kDegree)});
+  EXPECT_NEAR(line.opening, 6, 1e-12);
+  EXPECT_LT((line.middle - Vector3d(5, 1, 2)).norm(), 1e-12);
+  EXPECT_LT((line.axis + Vector3d::UnitX()).norm(), 1e-12);
 }
 
 TEST(Eigengrasp, PinchOfABoxFingerByFinger) {
@@ -157,6 +182,55 @@ TEST(Eigengrasp, ThreeFingersHoldABar) {
     }
     EXPECT_EQ(sides[0] * sides[1], 2);  // the thumb on one side, both fingers on the other
   }
+}
+
+TEST(Eigengrasp, ThreeFingersHoldABall) {
+  const double radius = 0.05;
+  const Vector3d centre(0.01, 0, radius);
+  const ProbabilisticSdf map = scan({table_plane(), {Sphere{radius}, at(centre.x(), centre.y(), centre.z())}});
+  SynthesisOptions options;
+  options.table = 0.0;
+  options.threads = 1;
+  const auto model = make_hand_model(eigengrasp_hand(sdh(), "tcp", kGroups, kSpherical), sdh());
+  const GraspSynthesis found = synthesize_grasps(map, *model, options);
+  ASSERT_EQ(found.outcome, Outcome::solved) << found.summary();
+  for (std::size_t i = 0; i < found.grasps.size(); ++i) {
+    const GraspRating& rating = found.ratings[i];
+    ASSERT_EQ(rating.patches.size(), 3u);
+    EXPECT_TRUE(rating.success.force_closure);
+    const auto pads = model->pads(model->shares_of(0, found.grasps[i].posture));
+    for (std::size_t k = 0; k < 3; ++k) {
+      const ContactPatch& patch = rating.patches[k];
+      // A patch is a plane through a cap of the ball, which pads of 41 x 24 mm see: its middle is inside, by less than 5 mm.
+      EXPECT_NEAR((patch.point - centre).norm(), radius - 0.002, 0.003);
+      EXPECT_GT(patch.normal.dot((patch.point - centre).normalized()), 0.95);
+      // Closed, the pad's plane is where the ball begins: it is tangent to it.
+      const Pose T = found.grasps[i].T_object_hand * pads[k].T_hand_pad;
+      EXPECT_NEAR((centre - T.translation()).dot(T.linear().col(2)), radius, 0.003);
+    }
+    // Round about the hand's axis no half is without a finger.
+    std::vector<double> angles;
+    for (const ContactPatch& patch : rating.patches) {
+      const Vector3d normal = found.grasps[i].T_object_hand.linear().transpose() * patch.normal;
+      angles.push_back(std::atan2(normal.y(), normal.x()) / kDegree);
+    }
+    std::sort(angles.begin(), angles.end());
+    for (int k = 0; k < 3; ++k) EXPECT_LT(k < 2 ? angles[k + 1] - angles[k] : angles[0] + 360 - angles[2], 160);
+  }
+}
+
+TEST(Eigengrasp, BallsTooRoundForFlatPadsAreSaidToBeUneven) {
+  // 41 mm of pad on a ball of 40 mm radius: its cap is 5 mm high, a patch is a plane within 2 mm.
+  const ProbabilisticSdf map = scan({table_plane(), {Sphere{0.04}, at(0, 0, 0.04)}});
+  SynthesisOptions options;
+  options.table = 0.0;
+  options.threads = 1;
+  const auto model = make_hand_model(eigengrasp_hand(sdh(), "tcp", kGroups, kSpherical), sdh());
+  const GraspSynthesis none = synthesize_grasps(map, *model, options);
+  EXPECT_EQ(none.outcome, Outcome::not_found);
+  EXPECT_GT(none.counts.uneven, none.counts.evaluated / 3);
+  options.patch.plane_tolerance = 0.003;
+  EXPECT_EQ(synthesize_grasps(map, *model, options).outcome, Outcome::solved);
 }
 
 TEST(Eigengrasp, ThreeFingerGripperOfData) {

@@ -155,19 +155,25 @@ def run_noise(context: Context) -> Result:
 
 
 def draw_noise(result: dict[str, Any]) -> Figure:
-    fig, axes = figure(11.0, 6.4, columns=4, rows=2)
+    fig, axes = figure(11.0, 5.8, columns=4, rows=2)
+    fig.suptitle("noise of a depth, and the map that comes of it; red: the contacts of the best grasp", fontsize=10)
     noise = [row["key"]["noise of a depth [cm]"] for row in result["rows"]]
     for axis, view, each in zip(axes, result["drawing"]["views"], noise, strict=False):
         scale = draw_surface(axis, view, f"{each:g} cm" + ("" if view["points"] else ": no grasp"))
-        fig.colorbar(scale, ax=axis, shrink=0.5, label="sigma [mm]")
-    for unused in axes[5], axes[7]:
-        unused.set_visible(False)
+        fig.colorbar(scale, ax=axis, orientation="horizontal", shrink=0.8, label="sigma [mm]")
+    plots = []
+    for left, right in ((axes[4], axes[5]), (axes[6], axes[7])):
+        right.remove()
+        first = left.get_subplotspec()
+        assert first is not None
+        left.set_subplotspec(first.get_gridspec()[1, first.colspan.start : first.colspan.start + 2])
+        plots.append(left)
     for column in ("sigma of the surface, median [mm]", "error of the surface, median [mm]"):
-        axes[4].plot(noise, [row["values"][column]["ours"] for row in result["rows"]], marker="o", label=column)
-    axes[4].set(xlabel="noise of a depth [cm]", ylabel="[mm]", ylim=(0, None))
-    axes[4].legend(frameon=False, loc="upper left", fontsize=7)
-    axes[6].bar(noise, [row["values"]["probability"]["ours"] or 0 for row in result["rows"]], width=0.5)
-    axes[6].set(xlabel="noise of a depth [cm]", ylabel="probability of the best grasp (0: none)", ylim=(0, 1))
+        plots[0].plot(noise, [row["values"][column]["ours"] for row in result["rows"]], marker="o", label=column)
+    plots[0].set(xlabel="noise of a depth [cm]", ylabel="[mm]", ylim=(0, None))
+    plots[0].legend(frameon=False, loc="upper left")
+    plots[1].bar(noise, [row["values"]["probability"]["ours"] or 0 for row in result["rows"]], width=0.5)
+    plots[1].set(xlabel="noise of a depth [cm]", ylabel="probability of the best grasp\n(0: none)", ylim=(0, 1))
     return fig
 
 
@@ -249,7 +255,7 @@ def draw_views(result: dict[str, Any]) -> Figure:
             axis.plot(frames, [np.nan if v is None else v for v in values], marker=".", label=name)
         axis.axvline(FROM_ABOVE + 0.5, color="0.6", linewidth=1)
         axis.set(xlabel="frames (the line: from above, then from the side)", ylabel=what, ylim=(0, None))
-        axis.xaxis.label.set_size(8)
+        axis.xaxis.label.set_fontsize(8)
         axis.legend(frameon=False)
     return fig
 

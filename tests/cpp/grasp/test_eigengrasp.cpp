@@ -103,8 +103,8 @@ TEST(Eigengrasp, PadsStandWhereTheirLinksAre) {
   EXPECT_NEAR(turn[0], 0, 1e-4);
   EXPECT_NEAR(std::abs(turn[1]), 120, 1e-4);
   EXPECT_NEAR(turn[1] + turn[2], 0, 1e-4);
-  // The pads are as far from the middle, where their pushes meet, as the ball between them has a radius: the roots lie on
-  // a circle of 66 mm / sqrt(3).
+  // The pads are as far from the middle, where their pushes meet, as the ball between them has a radius: the roots lie
+  // on a circle of 66 mm / sqrt(3).
   const ClosingLine line = closing_line(round->pads({1, 1, 1}));
   EXPECT_NEAR(line.opening / 2, 0.066 / std::sqrt(3.0) + 0.0865 * std::sin(25 * kDegree) - 0.012, 1e-5);
   for (const FingerPad& pad : round->pads({1, 1, 1})) {
@@ -201,7 +201,8 @@ TEST(Eigengrasp, ThreeFingersHoldABall) {
     const auto pads = model->pads(model->shares_of(0, found.grasps[i].posture));
     for (std::size_t k = 0; k < 3; ++k) {
       const ContactPatch& patch = rating.patches[k];
-      // A patch is a plane through a cap of the ball, which pads of 41 x 24 mm see: its middle is inside, by less than 5 mm.
+      // A patch is a plane through a cap of the ball, which pads of 41 x 24 mm see: its middle is inside, by less than
+      // 5 mm.
       EXPECT_NEAR((patch.point - centre).norm(), radius - 0.002, 0.003);
       EXPECT_GT(patch.normal.dot((patch.point - centre).normalized()), 0.95);
       // Closed, the pad's plane is where the ball begins: it is tangent to it.

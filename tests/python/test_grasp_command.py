@@ -68,8 +68,13 @@ def test_the_table_one_object_and_the_file(scanned: Path, tmp_path: Path, capsys
     assert f"of {counts['drawn']} surface points drawn, {counts['evaluated']} grasps evaluated" in " ".join(
         printed.split()
     )
-    for cause in ("no_opposite", "collision", "near_better"):
-        assert counts[cause] > 0 and f"{cause.replace('_', ' ')} {counts[cause]}" in " ".join(printed.split())
+    causes = {
+        "no_opposite": "no opposite",
+        "collision": "collision",
+        "near_better": "near a better one or not among the best",
+    }
+    for cause, told in causes.items():
+        assert counts[cause] > 0 and f"{told} {counts[cause]}" in " ".join(printed.split())
     assert [row["name"] for row in json.loads(out.read_text())["objects"]] == ["object_1"]
     # The same seed gives the same grasps.
     again = grasps(scanned, capsys, "--object", "object_1")
@@ -143,7 +148,8 @@ def test_a_gripper_too_narrow_for_everything_is_said(
 def test_less_room_around_uncertain_surfaces_is_offered(scanned: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """With 40 standard deviations kept free the hand fits nowhere; what is said helps."""
     assert main(["grasp", str(scanned), "--gripper", GRIPPER, "--object", "object_1", "--sigmas", "40"]) == 4
-    said = re.search(r"; (\d+) would hold, but the hand touches the map within its sigmas", capsys.readouterr().out)
+    printed = " ".join(capsys.readouterr().out.split())
+    said = re.search(r"; (\d+) touch the map, with 40 standard deviations of it kept free \(--sigmas\)", printed)
     assert said and int(said[1]) > 20
     (row,) = grasps(scanned, capsys, "--object", "object_1", "--sigmas", "0")["objects"]
     assert row["grasps"]

@@ -50,6 +50,17 @@ def tip_corners(robot: mg.Robot, joints: dict[str, float], T_world_hand: np.ndar
     return np.asarray((steps * HALF + [0, 0, HALF[2]]) @ T[:3, :3].T + T[:3, 3])
 
 
+def lowest(robot: mg.Robot, joints: dict[str, float], T_world_hand: np.ndarray) -> float:
+    """Height of the hand's lowest corner above the table [m]."""
+    poses, least = robot.link_poses(joints), np.inf
+    for link in robot.links:
+        for shape in robot.collisions(link):
+            assert isinstance(shape.shape, mg.Box)
+            T = T_world_hand @ np.linalg.inv(poses["tcp"]) @ poses[link] @ shape.pose
+            least = min(least, float(T[2, 3] - np.abs(T[2, :3]) @ np.asarray(shape.shape.size) / 2))
+    return least
+
+
 def outside(points: np.ndarray, T_box: np.ndarray, size: np.ndarray) -> np.ndarray:
     """Signed distance of points from a box [m]."""
     away = np.abs((points - T_box[:3, 3]) @ T_box[:3, :3]) - size / 2
@@ -76,6 +87,8 @@ def test_fingertips_close_on_the_boxes(scanned: Path, capsys: pytest.CaptureFixt
                     closed = outside(tip_corners(robot, grasp["joints"], T, tip), *box)
                     assert abs(closed.min()) < 0.004, (grasp["type"], tip, closed.min())
                     assert open_.min() > closed.min()
+            for joints in (grasp["pretouch_joints"], grasp["joints"]):
+                assert lowest(robot, joints, T) > 0, grasp["type"]
         counts = row["counts"]
         lost = sum(
             counts[k] for k in ("missed", "uneven", "slipping", "uncertain", "collision", "table", "arm", "near_better")
@@ -164,16 +177,33 @@ def test_a_bad_profile_is_refused_at_its_line(
     assert "hand.yaml:" in str(caught.value)
 
 
-def test_rounds_refuse_such_a_hand(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    profile = yaml.safe_load(PROFILE.read_text())
-    profile["robot"] |= {"group": {"base_link": "palm", "tip_link": "tcp"}, "home": {}}
-    path = tmp_path / "hand.yaml"
-    path.write_text(yaml.safe_dump(profile))
-    assert (
-        main(["plan", str(ASSETS / "scenarios" / "storeroom.yaml"), "--robot", str(path), "-o", str(tmp_path / "out")])
-        == 2
+def test_a_ball_is_held_from_all_around(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A ball of 10 cm: spherical grasps, their three tips on it once closed."""
+    ball, radius = np.array([0.02, 0.01, 0.05]), 0.05
+    monkeypatch.setattr(
+        "frame_folders.SCENE",
+        [mg.LinkShape(mg.collision.Plane([0, 0, 1], 0.0)), mg.LinkShape(mg.Sphere(radius), mg.pose(ball))],
     )
-    assert "needs a place_region" in capsys.readouterr().err.replace("\n", " ")
+    write_frames(tmp_path / "frames", "npz", 18)
+    write_sensors(tmp_path / "frames")
+    assert run(tmp_path / "frames", tmp_path / "map", "--voxel", "0.003") == 0
+    (row,) = grasps(tmp_path / "map", capsys, "--gripper", "sdhlike", "--samples", "400")["objects"]
+    round_ones = [grasp for grasp in row["grasps"] if grasp["type"] == "spherical"]
+    assert round_ones, row["summary"]
+    robot = mg.Robot.load(ASSETS / "grippers" / "sdhlike" / "sdhlike.urdf")
+    for grasp in round_ones:
+        T = mg.pose(grasp["T_world_hand"]["xyz"], quat_xyzw=grasp["T_world_hand"]["quat_xyzw"])
+        for tip in ALL_TIPS:
+            closed, open_ = (
+                np.linalg.norm(tip_corners(robot, grasp[key], T, tip) - ball, axis=1).min() - radius
+                for key in ("joints", "pretouch_joints")
+            )
+            assert abs(closed) < 0.004 and open_ > 0.001, (tip, closed, open_)
+
+
+def test_rounds_refuse_such_a_hand(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     scenario = (ASSETS / "scenarios" / "storeroom.yaml").read_text()
     begin, end = scenario.index("\ngripper:"), scenario.index("\nplace_region:")
     changed = tmp_path / "scenario.yaml"

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import mmgrasp as mg
-from frame_folders import PINHOLE, Shot, names, run, shots, write_npz, write_sensors
+from frame_folders import PINHOLE, Shot, contents, names, run, shots, write_npz, write_sensors
 from mmgrasp.frames import open_frames
 
 OFF, TURNED = 0.004, 0.006
@@ -63,11 +64,40 @@ def test_frames_are_moved_onto_the_map(tmp_path: Path) -> None:
     assert (tmp_path / "map" / "map.sdf").read_bytes() == (tmp_path / "direct.sdf").read_bytes()
 
 
+def test_two_runs_give_the_bytes_of_one(tmp_path: Path) -> None:
+    """Half of the frames first, then all of them."""
+    exact = shots(6, SCALE)
+    write_npz(tmp_path / "frames", displaced(exact))
+    write_sensors(tmp_path / "frames", f"pose_error: {{translation: {OFF}, rotation: {TURNED}}}")
+    later = tmp_path / "later"
+    later.mkdir()
+    for k in (3, 4, 5):
+        (tmp_path / "frames" / f"camera_{k:03d}.npz").rename(later / f"camera_{k:03d}.npz")
+    options = ("--register", "--outlier-gate", "5")
+    assert run(tmp_path / "frames", tmp_path / "parts", *options) == 0
+    for path in later.iterdir():
+        path.rename(tmp_path / "frames" / path.name)
+    assert run(tmp_path / "frames", tmp_path / "parts", "--octree", "0.02") == 0  # the options are those of the map
+    assert run(tmp_path / "frames", tmp_path / "whole", "--octree", "0.02", *options) == 0
+    for name in ("map.sdf", "progress.json", "occupancy.bt"):
+        assert (tmp_path / "parts" / name).read_bytes() == (tmp_path / "whole" / name).read_bytes(), name
+
+    # The octree has its frames where they were registered.
+    rows = json.loads((tmp_path / "whole" / "progress.json").read_text())["frames"]
+    direct = mg.mapping.OccupancyMap(resolution=0.02)
+    folder = open_frames(tmp_path / "frames")
+    for frame, row in zip(folder.frames, rows, strict=True):
+        loaded = folder.read(frame)
+        direct.integrate(mg.mapping.DepthImage(loaded.image.depth, PINHOLE, row["T_world_camera"]), loaded.camera)
+    direct.save(tmp_path / "direct.bt")
+    assert (tmp_path / "whole" / "occupancy.bt").read_bytes() == (tmp_path / "direct.bt").read_bytes()
+
+
 def test_a_sensor_without_a_pose_error_is_not_registered(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     write_npz(tmp_path / "frames", shots(3, SCALE))
     write_sensors(tmp_path / "frames")
-    assert run(tmp_path / "frames", tmp_path / "map", "--register") != 0
-    assert "has no pose_error: --register" in " ".join(capsys.readouterr().out.split())
+    assert run(tmp_path / "frames", tmp_path / "map", "--register") == 2
+    assert "has no pose_error: --register" in " ".join(capsys.readouterr().err.split())
 
 
 def test_a_map_is_gone_on_with_as_it_was_begun(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -108,7 +138,7 @@ def test_the_gate_keeps_speckles_out(tmp_path: Path) -> None:
     assert measured["with"] < 0.3 * measured["without"], measured
 
 
-def test_the_octree_is_octomaps_own(tmp_path: Path) -> None:
+def test_the_octree_is_octomaps_own(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     taken = shots(4, SCALE)
     write_npz(tmp_path / "frames", taken)
     write_sensors(tmp_path / "frames")
@@ -125,8 +155,17 @@ def test_the_octree_is_octomaps_own(tmp_path: Path) -> None:
         [[0.0, 0.0, 0.15], [-0.12, -0.05, 0.095], [0.0, 0.0, -0.1]]
     )
     assert known.tolist() == [True, True, False] and occupied.tolist()[:2] == [False, True]
-    # A later run without the option does not leave an old one behind.
-    assert run(tmp_path / "frames", tmp_path / "map") == 0
-    assert "occupancy.bt" not in names(tmp_path / "map")
+    # What is refused leaves everything as it was; a later run without the option does not leave an old tree behind.
+    before = contents(tmp_path / "map")
+    assert run(tmp_path / "frames", tmp_path / "map", "--octree", "0.0002") == 2
+    said = re.search(r"may have (\S+) cells with this frame, (\d+) MB", capsys.readouterr().err)
+    assert said and contents(tmp_path / "map") == before
+    # A frame sees a pyramid of 0.45 m and more over 0.89 x 0.67 of that.
+    seen = 0.45**3 * (160 * 120) / (3 * 180**2) / 0.0002**3
+    assert 0.7 * seen < float(said[1]) < 2 * seen
     (tmp_path / "frames" / "camera_001.npz").unlink()
     assert run(tmp_path / "frames", tmp_path / "map", "--octree", "0.02") == 2
+    assert "camera_001.npz: is in the map, but no longer in the folder" in " ".join(capsys.readouterr().err.split())
+    assert contents(tmp_path / "map") == before
+    assert run(tmp_path / "frames", tmp_path / "map") == 0
+    assert "occupancy.bt" not in names(tmp_path / "map")

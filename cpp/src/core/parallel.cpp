@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <atomic>
+#include <deque>
 #include <exception>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
-#include <vector>
 
+#include "core/worker_thread.hpp"
 #include "mmgrasp/core/detail/interruption.hpp"
 #include "mmgrasp/core/error.hpp"
 
@@ -81,13 +82,16 @@ bool parallel_for(std::size_t count, int threads, const std::function<void(std::
                   const Monitor& monitor, const char* stage) {
   const int workers = static_cast<int>(std::min<std::size_t>(resolve_threads(threads), count));
   Loop loop{count, work, monitor, stage, detail::interruption_token()};
-  std::vector<std::thread> pool;
-  try {
-    for (int worker = 1; worker < workers; ++worker) pool.emplace_back([&loop, worker] { loop.run_elsewhere(worker); });
-  } catch (...) {  // the system gives no more threads: go on with those that started
+  {
+    const bool beside = workers > 1 && detail::processors_idle(workers - 1);
+    std::deque<detail::WorkerThread> pool;
+    try {
+      for (int worker = 1; worker < workers; ++worker)
+        pool.emplace_back(worker, workers, beside, [&loop, worker] { loop.run_elsewhere(worker); });
+    } catch (...) {  // the system gives no more threads: go on with those that started
+    }
+    loop.run(0);
   }
-  loop.run(0);
-  for (std::thread& thread : pool) thread.join();
   if (loop.exception) std::rethrow_exception(loop.exception);
   if (loop.done.load() < count) {
     if (!monitor.stopped()) detail::throw_if_interrupted();  // nobody looks whether a silent loop was stopped

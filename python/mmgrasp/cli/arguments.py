@@ -231,7 +231,7 @@ def _add_grasp(commands: Commands) -> None:
         "--gripper",
         type=_source,
         metavar="NAME",
-        help="whose gripper: a shipped profile (tiago, ...), or the file of a robot profile or scenario",
+        help="whose gripper: a shipped profile (tiago, ..., sdhlike), or the file of a robot profile or scenario",
     )
     parser.add_argument(
         "--robot",
@@ -251,14 +251,18 @@ def _add_grasp(commands: Commands) -> None:
         "--png", type=_path, metavar="FILE", help="also draw the best grasp of each object with its contact patches"
     )
     parser.add_argument(
-        "--samples", type=_count(1, 100_000, "samples"), default=200, metavar="N", help="grasps tried for an object"
+        "--samples",
+        type=_count(1, 100_000, "samples"),
+        default=200,
+        metavar="N",
+        help="grasps tried for an object, with each type of grasp",
     )
     parser.add_argument(
         "--sigmas",
         type=_sigmas,
         default=2.0,
         metavar="K",
-        help="standard deviations of the surface that the hand keeps free around itself (default 2)",
+        help="standard deviations of the map's surface that hand and arm keep free (default 2)",
     )
     parser.add_argument(
         "--grasps", type=_count(1, 1000, "grasps"), default=20, metavar="N", help="best kept of an object (default 20)"

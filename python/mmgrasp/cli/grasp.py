@@ -44,7 +44,7 @@ def run_grasp(arguments: argparse.Namespace, console: Console) -> int:
     objects, plane = _read_objects(arguments.map)
     chosen = _chosen(objects, arguments.object, arguments.map)
     sdf = _core.ProbabilisticSdf.load(str(arguments.map / "map.sdf"))
-    around = Surroundings(sdf) if types.arms else None
+    around = Surroundings(sdf, arguments.sigmas) if types.arms else None
     rows = []
     with Reporter(console) as report:
         for k, thing in enumerate(chosen):
@@ -52,6 +52,7 @@ def run_grasp(arguments: argparse.Namespace, console: Console) -> int:
             rows.append(_grasps_of(thing, plane, sdf, types, around, arguments))
         report("grasps", 1.0)
     content = {"format": FORMAT, "version": VERSION, "gripper": arguments.gripper or arguments.robot, "objects": rows}
+    content |= {"samples": arguments.samples, "sigmas": arguments.sigmas, "seed": arguments.seed}
     if types.arms:
         content |= {"robot": arguments.robot, "base": arguments.base or [0.0] * 4}
     if arguments.out is not None:
@@ -157,7 +158,7 @@ def _grasps_of(
     box += [[-_ROOM], [_ROOM]]
     grasps: list[dict[str, Any]] = []
     counts: Counter[str] = Counter()
-    said = []
+    said: dict[str, str] = {}
     for kind, hand in types.hands.items():
         arm = types.arms.get(kind)
         found = _core.synthesize_grasps(
@@ -176,17 +177,18 @@ def _grasps_of(
         if found.outcome == Outcome.stopped:
             raise KeyboardInterrupt
         counts.update(found.counts)
-        said.append(f"{kind}: {found.summary()}" if kind else found.summary())
+        said[kind] = found.summary()
         for grasp, rating in zip(found.grasps, found.ratings, strict=True):
             grasps.append(({"type": kind} if kind else {}) | _grasp(grasp, rating, hand, arm))
     grasps.sort(key=lambda grasp: -float(grasp["probability"]))
-    counts["near_better"] += len(grasps[arguments.grasps :])
-    return {
-        "name": thing["name"],
-        "summary": "; ".join(said),
-        "counts": dict(counts),
-        "grasps": grasps[: arguments.grasps],
-    }
+    kept = grasps[: arguments.grasps]
+    counts["near_better"] += len(grasps) - len(kept)
+    summary = "; ".join(f"{kind}: {text}" if kind else text for kind, text in said.items())
+    if len(grasps) > len(kept):
+        summary += f"; kept are the best {len(kept)}"
+    if not grasps and counts["collision"] and arguments.sigmas > 0:
+        summary += f"; {counts['collision']} touch the map, with {arguments.sigmas:g} standard deviations of it kept free (--sigmas)"
+    return {"name": thing["name"], "summary": summary, "counts": dict(counts), "grasps": kept}
 
 
 def _grasp(
@@ -215,7 +217,10 @@ def _grasp(
 
 def _lost(row: dict[str, Any]) -> str:
     """What became of all that were tried beside the grasps that were found; the summary says it where there are none."""
-    causes = [(name.replace("_", " "), n) for name, n in row["counts"].items() if n and name not in _TRIED]
+    named = {"near_better": "near a better one or not among the best"}
+    causes = [
+        (named.get(name, name.replace("_", " ")), n) for name, n in row["counts"].items() if n and name not in _TRIED
+    ]
     if not row["grasps"] or not causes:
         return ""
     causes.sort(key=lambda cause: -cause[1])

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from rich.console import Console
 
-from .._core import InvalidInput
+from .._core import InvalidInput, OccupancyMap
 from .._files import printable, write_file
 from ..frames import FrameFolder, open_frames
 from ..scan import (
@@ -58,7 +58,8 @@ def run_scan(arguments: argparse.Namespace, console: Console) -> int:
         if not scan.frames:
             _print_nothing(scan, console, arguments.json)
             return NOTHING_USABLE
-        summary = _write(scan, frames, folder, report, arguments)
+        octree = None if arguments.octree is None else occupancy_of(frames, scan, arguments.octree, report)
+        summary = _write(scan, frames, folder, octree, report, arguments)
     if arguments.json:
         print(json.dumps({**summary, "added": added}, indent=1, allow_nan=False))
     else:
@@ -78,7 +79,8 @@ def _begin(arguments: argparse.Namespace, frames: FrameFolder, folder: OutputFol
         if now is not None and now != was:
             flag = "--" + name.replace("_", "-")
             unit = 1e6 if name == "max_memory" else 1.0
-            given, before = (f"{flag} {now / unit:g}", f"{was / unit:g}") if flag != "--register" else (flag, "none")
+            given = flag if name == "register" else f"{flag} {now / unit:g}"
+            before = f"{was / unit:g}" if was else "none"
             raise InvalidInput(
                 f"{given}: the map in {printable(str(arguments.out))} was made with {before}: "
                 f"leave {flag} out to go on with it, or make it anew with --start-over"
@@ -110,7 +112,12 @@ def _save(scan: Scan, draft: Path, name: str) -> None:
 
 
 def _write(
-    scan: Scan, frames: FrameFolder, folder: OutputFolder, report: Reporter, arguments: argparse.Namespace
+    scan: Scan,
+    frames: FrameFolder,
+    folder: OutputFolder,
+    octree: OccupancyMap | None,
+    report: Reporter,
+    arguments: argparse.Namespace,
 ) -> dict[str, Any]:
     """The map first, so that it is there whatever becomes of the rest; then what is made of it."""
     report("writing the map", 0.0)
@@ -121,7 +128,6 @@ def _write(
     report("objects", 0.0)
     found, objects = _objects(scan, frames, arguments.up, points, vertex_normals(points, triangles), sigmas)
     summary = scan_summary(scan, frames, sigmas, objects)
-    octree = None if arguments.octree is None else occupancy_of(frames, scan, arguments.octree, report)
     report("writing", 0.0)
     with folder.illustrated() as draft:
         write_ply(draft / "mesh.ply", points, triangles, sigmas)

@@ -41,7 +41,7 @@ REACH = (
     0.09  # the bunny reaches no farther along and across [m]; beyond it ripples of a noisy table are higher than 1 cm
 )
 MIDDLE = np.array([0.0, 0.0, 0.045])
-BUNNY_EYE = MIDDLE + 0.42 * np.array([np.cos(0.45) * np.cos(-1.1), np.cos(0.45) * np.sin(-1.1), np.sin(0.45)])
+EYE = MIDDLE + 0.42 * np.array([np.cos(0.45) * np.cos(-1.1), np.cos(0.45) * np.sin(-1.1), np.sin(0.45)])
 LEAST_SIGMA = 0.0005  # told to the map of noise-free frames
 CRITERIA_NOISE = 0.001
 CRITERIA = ("angle", "placement", "centring", "certainty")
@@ -92,7 +92,7 @@ def measure_noise(noise: float, frames: int, seed: int) -> dict[str, Any]:
         out["pose"] = found.grasps[0].T_object_hand.tolist()
         out["probability"] = found.grasps[0].quality
         pads = [patch.point.tolist() for patch in found.ratings[0].patches]
-    out["view"] = seen_surface(sdf, looking_at(BUNNY_EYE, MIDDLE), max(3.0 * out["sigma"], 1e-4), pads)
+    out["view"] = seen_surface(sdf, looking_at(EYE, MIDDLE), pads)
     return out
 
 
@@ -158,9 +158,9 @@ def draw_noise(result: dict[str, Any]) -> Figure:
     fig, axes = figure(11.0, 5.8, columns=4, rows=2)
     fig.suptitle("noise of a depth, and the map that comes of it; red: the contacts of the best grasp", fontsize=10)
     noise = [row["key"]["noise of a depth [cm]"] for row in result["rows"]]
-    for axis, view, each in zip(axes, result["drawing"]["views"], noise, strict=False):
-        scale = draw_surface(axis, view, f"{each:g} cm" + ("" if view["points"] else ": no grasp"))
-        fig.colorbar(scale, ax=axis, orientation="horizontal", shrink=0.8, label="sigma [mm]")
+    for axis, view, each in zip(axes[:4], result["drawing"]["views"], noise, strict=True):
+        scale = draw_surface(axis, view, (0.02, 10), f"{each:g} cm" + ("" if view["points"] else ": no grasp"))
+    fig.colorbar(scale, ax=axes[:4], shrink=0.8, label="sigma [mm]")
     plots = []
     for left, right in ((axes[4], axes[5]), (axes[6], axes[7])):
         right.remove()
@@ -180,7 +180,6 @@ def draw_noise(result: dict[str, Any]) -> Figure:
 # --- figures 4.17 and 4.18 --------------------------------------------------------------------------------------------
 FROM_ABOVE = 9  # frames before the camera goes to the sides, as P3's first nine seconds
 NOISE = 0.002
-CAR_EYE = MIDDLE + 0.42 * np.array([np.cos(0.5) * np.cos(-1.0), np.cos(0.5) * np.sin(-1.0), np.sin(0.5)])
 
 
 def car_points(count: int, seed: int) -> dict[str, np.ndarray]:
@@ -212,7 +211,7 @@ def measure_views(frames: int, seed: int) -> dict[str, Any]:
                 {"known": float(known.mean()), "sigma": float(np.median(sigma[known])) if known.any() else None}
             )
         if k + 1 in (1, FROM_ABOVE, frames):
-            view = seen_surface(sdf, looking_at(CAR_EYE, MIDDLE), NOISE, [])
+            view = seen_surface(sdf, looking_at(EYE, MIDDLE), [])
             out["views"].append({"frames": k + 1, **view})
     return out
 
@@ -245,7 +244,7 @@ def draw_views(result: dict[str, Any]) -> Figure:
     for axis, view in zip(axes, views, strict=False):
         many = "1 frame" if view["frames"] == 1 else f"{view['frames']} frames"
         side = "from above" if view["frames"] <= FROM_ABOVE else "then from the side"
-        scale = draw_surface(axis, view, f"{many}, {side}")
+        scale = draw_surface(axis, view, (0.2, 2), f"{many}, {side}")
     fig.colorbar(scale, ax=axes[:3], shrink=0.6, label="sigma [mm]")
     axes[5].set_visible(False)
     frames = [row["key"]["frames"] for row in result["rows"]]

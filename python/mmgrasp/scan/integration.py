@@ -31,6 +31,8 @@ PROGRESS_FILE = "progress.json"
 DEFAULTS: dict[str, Any] = {name: value for name, (value, _) in _sdf_option_table().items()}
 """Defaults of the library's options."""
 _MOST_INVERTED = 3
+_CELL_BYTES = 64  # of OctoMap's tree, and of the set of cells that one frame changes
+_NO_POSE_ERROR = "has no pose_error: --register moves a pose as far as that says"
 _PUT_BACK = "put it back, or make the map anew with --start-over"
 
 
@@ -133,6 +135,8 @@ def integrate_frames(
             reason = _advised(folder, frame, str(error))
             if str(error).startswith("max_memory"):
                 raise InvalidInput(f"{frame.name}: {error}: see --voxel and --max-memory") from None
+            if reason.endswith(_NO_POSE_ERROR):
+                raise InvalidInput(f"{frame.name}: {reason}") from None
             inverted += "when the poses are inverted" in reason
             if inverted >= _MOST_INVERTED:
                 raise InvalidInput(f"{frame.name}: {reason}; {inverted} frames say so") from None
@@ -153,7 +157,7 @@ def integrate_frames(
 def occupancy_of(folder: FrameFolder, scan: Scan, resolution: float, progress: Progress = None) -> OccupancyMap:
     """An octree of free, occupied and unknown cells of `resolution` [m], from the frames in a scan's map at the poses they have there.
 
-    Raises InvalidInput when one of them can no longer be read.
+    Raises InvalidInput when one of them is no longer in the folder, and before the cells take more memory than the map may.
     """
     out = OccupancyMap(resolution=resolution)
     by_name = {frame.name: frame for frame in folder.frames}
@@ -161,10 +165,25 @@ def occupancy_of(folder: FrameFolder, scan: Scan, resolution: float, progress: P
         if progress:
             progress("octree", i / len(scan.frames))
         if record.name not in by_name:
-            raise InvalidInput(f"{record.name}: is in the map, but no longer in the folder: an octree needs all frames")
+            raise InvalidInput(
+                f"{record.name}: is in the map, but no longer in the folder: an octree needs all frames; leave --octree out"
+            )
         loaded = folder.read(by_name[record.name])
+        cells = out.cells + _volume_seen(loaded) / resolution**3
+        if cells * _CELL_BYTES > scan.options.max_memory:
+            raise InvalidInput(
+                f"{record.name}: an octree of {resolution:g} m may have {cells:.1e} cells with this frame, {cells * _CELL_BYTES / 1e6:.0f} MB, "
+                f"more than the {scan.options.max_memory / 1e6:g} MB of --max-memory: give --octree larger cells"
+            )
         out.integrate(DepthImage(loaded.image.depth, loaded.image.camera, record.T_world_camera), loaded.camera)
     return out
+
+
+def _volume_seen(loaded: LoadedFrame) -> float:
+    """Between the camera and what it measured [m^3]: a pyramid for each pixel."""
+    at, depth = loaded.camera.intrinsics, np.asarray(loaded.image.depth, dtype=float)
+    seen = depth[(depth >= at.nearest) & (depth <= at.farthest)]
+    return float((seen**3).sum() / (3 * at.fx * at.fy))
 
 
 def every_nth(frames: list[Frame], every: int) -> list[Frame]:
@@ -249,7 +268,7 @@ def _add(folder: FrameFolder, scan: Scan, frame: Frame) -> FrameRecord:
 def _registered(sdf: ProbabilisticSdf, loaded: LoadedFrame, sensor: Sensor) -> tuple[LoadedFrame, str]:
     """The frame moved onto the map, or as it was and why it was not moved."""
     if loaded.pose_covariance is None:
-        raise InvalidInput(f"{sensor.shown} has no pose_error: --register moves a pose as far as that says")
+        raise InvalidInput(f"{sensor.shown} {_NO_POSE_ERROR}")
     if not sdf.frames:
         return loaded, ""
     image = loaded.image

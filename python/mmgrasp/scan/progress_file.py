@@ -58,6 +58,8 @@ def read_scan(path: Path) -> Scan:
     values["max_memory"] = options["max_memory"].number(above=0, most=LARGEST_MEMORY)
     if "outlier_gate" in options:
         values["outlier_gate"] = options["outlier_gate"].number(least=0)
+        if 0 < values["outlier_gate"] < 3:
+            options["outlier_gate"].fail("must be 0, or at least 3")
     if "register" in options:
         values["register"] = options["register"].boolean()
     name = root["map"].string()

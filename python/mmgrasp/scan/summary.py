@@ -20,6 +20,8 @@ def scan_summary(scan: Scan, folder: FrameFolder, sigmas: np.ndarray, objects: d
         "map": {
             "voxel": scan.options.voxel,
             "truncation": scan.options.truncation,
+            "outlier_gate": scan.options.outlier_gate,
+            "registered": scan.options.register,
             "frames": len(scan.frames),
             "blocks": scan.sdf.blocks,
             "bytes": scan.sdf.memory,

@@ -8,7 +8,6 @@ import numpy as np
 
 from .._core import ProbabilisticSdf, Voxels, World, pose
 
-SIGMAS = 2.0
 NEAR = 0.03  # around an object, where the hand is checked against the map's surface and cells would shut it out [m]
 THICKNESS = 0.02  # of the table's top [m]
 
@@ -16,8 +15,9 @@ THICKNESS = 0.02  # of the table's top [m]
 class Surroundings:
     """The obstacles of a map, and a world of them for each of its objects."""
 
-    def __init__(self, sdf: ProbabilisticSdf) -> None:
-        self._cells = sdf.obstacle_cells(SIGMAS)
+    def __init__(self, sdf: ProbabilisticSdf, sigmas: float) -> None:
+        """`sigmas`: standard deviations of the surface that the arm keeps free."""
+        self._cells = sdf.obstacle_cells(sigmas)
         self._points = sdf.points()[0]
         self._level = max(0.004, 2 * sdf.voxel)  # what the map has so near to the table is the table [m]
 

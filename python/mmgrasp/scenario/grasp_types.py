@@ -26,6 +26,8 @@ def read_grasp_types(node: Node, robot: Robot, tool_link: str, approach: list[fl
     joints = [name for _, names in groups for name in names]
     hands: dict[str, Hand] = {}
     for kind, ends in node["types"].items():
+        if not kind.isprintable() or not kind.strip():
+            ends.fail("a type of grasp needs a name")
         ends.mapping("open closed")
         opened = _read_posture(ends["open"], robot, joints)
         for name in joints:

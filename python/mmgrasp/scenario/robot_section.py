@@ -107,7 +107,8 @@ def profile_path(name: str, folders: tuple[str, ...] = ("robots",)) -> Path:
     shipped_ones = [p for folder in folders for p in (ASSETS / folder).glob("*/*.yaml") if p.stem == p.parent.name]
     known = {p.stem: p for p in sorted(shipped_ones)}
     if name not in known:
-        raise InvalidInput(f"robot name = {name!r}: no such robot{near_miss(name, list(known))}")
+        what = "robot" if folders == ("robots",) else "robot or gripper"
+        raise InvalidInput(f"{what} name = {name!r}: no such {what}{near_miss(name, list(known))}")
     return known[name]
 
 
@@ -169,7 +170,7 @@ def read_arm_of(source: str, progress: Progress = None) -> ArmSetup:
 def read_hand_types(source: str, *, arm: bool = False, progress: Progress = None) -> HandTypes:
     """A gripper by its types of grasp, with `arm` also the arm that carries it; named and refused as in read_gripper()."""
     sections = _sections_of(source)
-    if "groups" not in sections.gripper:
+    if "groups" not in sections.gripper and "types" not in sections.gripper:
         if not arm:
             return HandTypes({"": read_gripper(source)})
         setup = _arm_setup(sections.robot, sections.gripper, progress)

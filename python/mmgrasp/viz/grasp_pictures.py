@@ -36,7 +36,8 @@ def write_grasp_picture(rows: list[dict[str, Any]], points: np.ndarray, sigmas: 
         title = f"{row['name']}: no grasp"
         if row["grasps"]:
             best = row["grasps"][0]
-            title = f"{row['name']}: probability {best['probability']:.2f}"
+            kind = f", {best['type']}" if "type" in best else ""
+            title = f"{row['name']}{kind}: probability {best['probability']:.2f}"
             _draw_grasp(axis, best, 0.3 * float(np.max(upper - lower)))
         axis.set_title(title, fontsize=10)
         half = max(0.03, 0.55 * float(np.max(upper - lower)))

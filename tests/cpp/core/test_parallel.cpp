@@ -1,8 +1,11 @@
 #include "mmgrasp/core/parallel.hpp"
 
 #include <gtest/gtest.h>
+#include <pthread.h>
+#include <sched.h>
 
 #include <atomic>
+#include <chrono>
 #include <stdexcept>
 #include <thread>
 #include <vector>
@@ -80,4 +83,45 @@ TEST(ParallelFor, EmptyAndBadThreads) {
   EXPECT_THROW(parallel_for(1, -1, [](std::size_t, int) {}), InvalidInput);
   EXPECT_GE(resolve_threads(0), 1);
   EXPECT_EQ(resolve_threads(3), 3);
+}
+
+namespace {
+
+cpu_set_t usable_processors() {
+  cpu_set_t usable;
+  CPU_ZERO(&usable);
+  EXPECT_EQ(pthread_getaffinity_np(pthread_self(), sizeof usable, &usable), 0);
+  return usable;
+}
+
+/// How many workers took part, each of which may run on the processors of its caller and no others.
+int workers_at_home(int threads) {
+  const cpu_set_t home = usable_processors();
+  std::atomic<int> started{0};
+  std::vector<std::atomic<bool>> took_part(threads);
+  const auto begin = std::chrono::steady_clock::now();
+  parallel_for(1000, threads, [&](std::size_t, int worker) {
+    const cpu_set_t usable = usable_processors();
+    EXPECT_TRUE(CPU_EQUAL(&home, &usable));
+    if (!took_part[worker].exchange(true)) ++started;
+    // Long enough for all to begin, however busy the machine.
+    while (started < threads && std::chrono::steady_clock::now() - begin < std::chrono::seconds(20))
+      std::this_thread::yield();
+  });
+  return started;
+}
+
+}  // namespace
+
+TEST(ParallelFor, WorkersMayRunWhereTheirCallerMay) {
+  for (int round = 0; round < 10; ++round) {
+    for (const int threads : {2, 3, 8}) EXPECT_EQ(workers_at_home(threads), threads);
+  }
+  std::thread([] {
+    cpu_set_t one;
+    CPU_ZERO(&one);
+    CPU_SET(sched_getcpu(), &one);
+    ASSERT_EQ(pthread_setaffinity_np(pthread_self(), sizeof one, &one), 0);
+    EXPECT_EQ(workers_at_home(3), 3);
+  }).join();
 }

@@ -234,11 +234,22 @@ void GraspEvaluator::confirm(EvaluatedGrasp& grasp) const {
     if (contact == HandContact::map) grasp.verdict = Verdict::collision;
     if (contact == HandContact::table) grasp.verdict = Verdict::table;
   }
-  if (grasp.verdict != Verdict::good || !hand_.parallel()) return;
-  const double width = opening_at(grasp.shares) - grasp.patches[0].nearest - grasp.patches[1].nearest;
-  if (width < smallest_opening()) {
-    grasp.verdict = Verdict::missed;
-  } else if (clearance_.pierced(hand_.boxes(shares_at(width)), grasp.T_world_hand, options_.patch.plane_tolerance)) {
+  if (grasp.verdict != Verdict::good) return;
+  std::vector<double> closed;
+  if (hand_.parallel()) {
+    const double width = opening_at(grasp.shares) - grasp.patches[0].nearest - grasp.patches[1].nearest;
+    if (width < smallest_opening()) {
+      grasp.verdict = Verdict::missed;
+      return;
+    }
+    closed = shares_at(width);
+  } else {
+    closed = holding_shares(grasp);
+  }
+  const std::vector<LinkShape> holding = hand_.boxes(closed);
+  if (clearance_.in_table(holding, grasp.T_world_hand) > 0) {
+    grasp.verdict = Verdict::table;  // fingertips that swing go down as they close
+  } else if (clearance_.pierced(holding, grasp.T_world_hand, options_.patch.plane_tolerance)) {
     grasp.verdict = Verdict::collision;  // something beside the pads keeps them from closing
   }
 }

@@ -87,16 +87,11 @@ std::string GraspSynthesis::summary() const {
     wide = "; half of the opposite walls are " + millimetres(median_too_wide) + " or more apart, and the hand opens " +
            millimetres(opens);
   }
-  const std::string room = counts.collision > counts.evaluated / 10
-                               ? "; " + number(counts.collision) +
-                                     " would hold, but the hand touches the map within its sigmas: fewer of them keep "
-                                     "less room around uncertain surfaces"
-                               : "";
   // Another place of the base changes this cause alone.
   const std::string beyond =
       counts.arm > 0 ? "; the arm does not get to the " + number(counts.arm) + " that hold: " + arm.summary() : "";
   return "no grasp of " + number(counts.drawn) + " surface points drawn and " + number(counts.evaluated) +
-         " grasps evaluated; most often (" + number(most->first) + "): " + most->second + wide + room + beyond;
+         " grasps evaluated; most often (" + number(most->first) + "): " + most->second + wide + beyond;
 }
 
 void draw_success(const ProbabilisticSdf& map, const HandModel& hand, const SurfaceDrawOptions& draws,

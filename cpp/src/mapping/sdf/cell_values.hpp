@@ -10,9 +10,10 @@ using Four = float __attribute__((vector_size(16)));
 struct CellValues {
   Four low, high;
   float operator[](int k) const { return k < 4 ? low[k] : high[k - 4]; }
+  void set(int k, float value) { (k < 4 ? low : high)[k & 3] = value; }
 };
 
-/// Whether all four are above zero.
+/// Whether all four are above zero. A comparison gives all bits or none of each; two by two they are whole numbers.
 inline bool all_positive(const Four& values) {
   using Bits = long long __attribute__((vector_size(16)));
   const Bits above = (Bits)(values > Four{0, 0, 0, 0});

@@ -276,7 +276,7 @@ class SdfSampler {
     CellValues shared;
     for (int k = 0; k < 8; ++k) {
       const VoxelBlock* const block = around_cell_.voxels(block_of(cell[0], cell[1], cell[2], k));
-      (k < 4 ? shared.low : shared.high)[k & 3] = block->systematic_variance();
+      shared.set(k, block->systematic_variance());
     }
     return trilinear(shared, t);
   }
@@ -359,9 +359,9 @@ class SdfSampler {
   static Sample interpolate(const Node* corner, const float* t, const std::array<float, 3>& correlation) {
     CellValues mean, variance, systematic;
     for (int k = 0; k < 8; ++k) {
-      (k < 4 ? mean.low : mean.high)[k & 3] = corner[k].mean;
-      (k < 4 ? variance.low : variance.high)[k & 3] = corner[k].variance;
-      (k < 4 ? systematic.low : systematic.high)[k & 3] = corner[k].systematic;
+      mean.set(k, corner[k].mean);
+      variance.set(k, corner[k].variance);
+      systematic.set(k, corner[k].systematic);
     }
     return {trilinear(mean, t), trilinear(variance, t) * kept(t, correlation) + trilinear(systematic, t), true};
   }

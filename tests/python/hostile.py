@@ -42,7 +42,7 @@ class Part(NamedTuple):
 PARTS = {
     "texts": Part("YAML and JSON texts", "yaml_text file_fuzz key_fuzz option_bounds floor_map gripper_refusals",
                   ("file_fuzz.py {scenario} 20000", "file_fuzz.py plan 20000", *(f"key_fuzz.py {door}" for door in
-                   ("scenario", "scanned", "pipe", "assembly", "profile", "gripper", "sensors", "map", "plan")))),
+                   ("scenario", "scanned", "pipe", "assembly", "profile", "gripper", "hand", "sensors", "map", "plan")))),
     "frames": Part("frames and maps of surfaces", "frames_fuzz map_file_fuzz scan_refusals"),
     "readers": Part("files of robots, meshes, clouds and trees", "module_files mesh_fuzz", ("./dev fuzz 120", "mesh_fuzz.py")),
     "calls": Part("every call, array and number of the stubs",

@@ -28,6 +28,7 @@ from key_fuzz_tables import (
     DROPPED,
     GRIPPERS,
     HAND,
+    HAND_TYPES,
     MAPS,
     MISSPELT,
     PIPES,
@@ -43,7 +44,7 @@ from mmgrasp.frames.sensors import read_sensors
 from mmgrasp.grippers.assembly_file import load_assembly
 from mmgrasp.pipes import load_pipe_problem
 from mmgrasp.scenario.floor_map import read_floor_map
-from mmgrasp.scenario.robot_section import read_arm_of, read_gripper
+from mmgrasp.scenario.robot_section import read_arm_of, read_gripper, read_hand_types
 
 SENSORS = {
     "version": 1,
@@ -90,6 +91,7 @@ HEADER = {
     "free_thresh": 0.2,
 }
 PROFILE = ASSETS / "robots" / "kr6like" / "kr6like.yaml"
+JOINTED = ASSETS / "grippers" / "sdhlike" / "sdhlike.yaml"
 DOORS: dict[str, Door] = {
     "scenario": Door(ASSETS / "scenarios" / "storeroom.yaml", mg.load_scenario, SCENARIOS),
     "scanned": Door(ASSETS / "scenarios" / "scanned_tray.yaml", mg.load_scenario, SCENARIOS),
@@ -97,6 +99,7 @@ DOORS: dict[str, Door] = {
     "assembly": Door(ASSETS / "assemblies" / "pulley.yaml", load_assembly, ASSEMBLIES),
     "profile": Door(PROFILE, lambda path: read_arm_of(str(path)), HAND),
     "gripper": Door(PROFILE, lambda path: read_gripper(str(path)), GRIPPERS),
+    "hand": Door(JOINTED, lambda path: read_hand_types(str(path)), HAND_TYPES),
     "sensors": Door(SENSORS, read_sensors, CAMERAS),
     "map": Door(HEADER, read_map, MAPS),
     "plan": Door({}, read_plan_whole, PLANS),

@@ -69,6 +69,17 @@ ROOM: Harmless = {
     "options.seed": ("0, dropped", DEFAULT),
 }
 """What scenarios and pipe problems have alike."""
+_FINGERS, _TYPES = ("thumb", "finger_1", "finger_2"), ("pinch", "cylindrical", "spherical")
+HAND_TYPES: Harmless = {
+    "gripper.approach[]": HAND["gripper.approach[]"],
+    **{f"gripper.groups.{group}": ("misspelt", NAME) for group in (*_FINGERS, "spread")},
+    **{f"gripper.types.{kind}": ("misspelt, dropped", "any name, and one of several") for kind in _TYPES},
+    **{f"gripper.types.{kind}.closed.{finger}_{joint}": ("dropped", "a joint that stays where it is")
+       for kind, joint, fingers in [("pinch", "distal", _FINGERS[1:])]
+       + [(kind, joint, _FINGERS[joint == "proximal" :]) for kind in _TYPES[1:] for joint in ("proximal", "distal")]
+       for finger in fingers},
+}  # fmt: skip
+"""A hand of many joints by its types of grasp."""
 SCENARIOS: Harmless = {
     **ROOM,
     **HAND,

@@ -11,8 +11,8 @@
 namespace mmgrasp::detail {
 namespace {
 
-/// Where the `number`-th of `all` workers begins: on a processor of its own where they take all that are usable, else on
-/// any but this one. Empty: nothing can be said.
+/// Where the `number`-th of `all` workers begins: on a processor of its own where they take all that are usable, else
+/// on any but this one. Empty: nothing can be said.
 cpu_set_t begin_of(int number, int all, const cpu_set_t& usable) {
   cpu_set_t begin;
   CPU_ZERO(&begin);

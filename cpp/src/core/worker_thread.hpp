@@ -14,9 +14,9 @@ bool processors_idle(int more);
 /// wait for some milliseconds: loops that are shorter than that then take as long as on one thread.
 class WorkerThread {
  public:
-  /// The `number`-th of `all` workers that run `work` at once, its creator being number 0. `beside`: it begins on another
-  /// of the processors that the creator may use; it may be moved to any of them from then on. Throws std::system_error
-  /// when the system gives no more threads.
+  /// The `number`-th of `all` workers that run `work` at once, its creator being number 0. `beside`: it begins on
+  /// another of the processors that the creator may use; it may be moved to any of them from then on. Throws
+  /// std::system_error when the system gives no more threads.
   WorkerThread(int number, int all, bool beside, std::function<void()> work);
   WorkerThread(const WorkerThread&) = delete;
   WorkerThread& operator=(const WorkerThread&) = delete;

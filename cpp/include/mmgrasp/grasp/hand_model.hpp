@@ -55,8 +55,8 @@ MMGRASP_EXPORT std::vector<int> opposed_sides(const std::vector<Eigen::Vector3d>
 
 /// Two virtual fingers: the pads of either of opposed_sides() (Arbib et al. 1985).
 struct MMGRASP_EXPORT ClosingLine {
-  /// As far from either side, in the tool frame [m]: a side's distance is the mean of its pads' ways to this place along
-  /// their pushes. It lies on the line along `axis` through the middle of both sides' mean pads.
+  /// As far from either side, in the tool frame [m]: a side's distance is the mean of its pads' ways to this place
+  /// along their pushes. It lies on the line along `axis` through the middle of both sides' mean pads.
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   Eigen::Vector3d axis = Eigen::Vector3d::UnitY();  ///< From the first side to the other, a unit vector.
   /// The sum of both sides' distances [m]: how far two parallel pads are apart, the diameter of a ball between fingers

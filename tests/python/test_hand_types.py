@@ -68,7 +68,7 @@ def outside(points: np.ndarray, T_box: np.ndarray, size: np.ndarray) -> np.ndarr
 
 
 def test_fingertips_close_on_the_boxes(scanned: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """By the robot's forward kinematics and the true boxes, neither of which the search has seen together."""
+    """The robot's forward kinematics and the true boxes say so, neither of which the search has seen together."""
     robot = mg.Robot.load(ASSETS / "grippers" / "sdhlike" / "sdhlike.urdf")
     rows = grasps(scanned, capsys, "--gripper", "sdhlike", "--samples", "400")["objects"]
     assert all(row["grasps"] for row in rows), [row["summary"] for row in rows]

@@ -150,7 +150,7 @@ def test_the_octree_is_octomaps_own(tmp_path: Path, capsys: pytest.CaptureFixtur
         direct.integrate(loaded.image, loaded.camera)
     direct.save(tmp_path / "direct.bt")
     assert (tmp_path / "map" / "occupancy.bt").read_bytes() == (tmp_path / "direct.bt").read_bytes()
-    # In the air above the table it is free, at a box's top occupied, below the table unknown.
+    # The air above the table is free, a box's top is occupied, what is below the table unknown.
     occupied, known = mg.mapping.OccupancyMap.load(tmp_path / "map" / "occupancy.bt").query(
         [[0.0, 0.0, 0.15], [-0.12, -0.05, 0.095], [0.0, 0.0, -0.1]]
     )

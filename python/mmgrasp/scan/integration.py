@@ -75,7 +75,7 @@ class FrameRecord:
     agreement: float | None
     warning: str
     outliers: int = 0
-    """Of 0 where no gate was asked for."""
+    """Pixels that the gate left out; 0 where none was asked for."""
 
 
 @dataclass(frozen=True)

@@ -72,7 +72,7 @@ def _begin(arguments: argparse.Namespace, frames: FrameFolder, folder: OutputFol
     path = folder.path / PROGRESS_FILE
     if arguments.start_over or not path.exists():
         chosen = {name: getattr(arguments, name) for name in _OPTIONS}
-        return Scan.begin(choose_options(frames, **chosen))
+        return Scan.begin(choose_options(frames, **{**chosen, "register": bool(arguments.register)}))
     scan = read_scan(path)
     for name, was in asdict(scan.options).items():
         now = getattr(arguments, name)

@@ -205,7 +205,7 @@ def choose_options(
     truncation: float | None,
     max_memory: float | None,
     outlier_gate: float | None = None,
-    register: bool | None = None,
+    register: bool = False,
 ) -> ScanOptions:
     """Options as given; the others from the first frame that can be read.
 
@@ -228,7 +228,7 @@ def choose_options(
     voxel = voxel or DEFAULTS["voxel"]
     truncation = truncation or voxel * DEFAULTS["truncation"] / DEFAULTS["voxel"]
     memory, gate = max_memory or DEFAULTS["max_memory"], outlier_gate or DEFAULTS["outlier_gate"]
-    return ScanOptions(voxel, round(truncation, 9), memory, gate, bool(register))
+    return ScanOptions(voxel, round(truncation, 9), memory, gate, register)
 
 
 def _whole_mm(length: float) -> float:

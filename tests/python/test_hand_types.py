@@ -104,6 +104,16 @@ def test_the_table_names_the_type(scanned: Path, capsys: pytest.CaptureFixture[s
         assert kind in printed
 
 
+def test_names_are_no_markup(scanned: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    profile = yaml.safe_load(PROFILE.read_text())
+    name = "[b]x[/y]"
+    profile["gripper"]["types"] = {name: profile["gripper"]["types"]["pinch"]}
+    path = tmp_path / "hand.yaml"
+    path.write_text(yaml.safe_dump(profile))
+    assert main(["grasp", str(scanned), "--gripper", str(path), "--object", "object_1"]) == 0
+    assert capsys.readouterr().out.count(name) == 2  # in the table and before its summary
+
+
 def test_an_arm_brings_the_hand_there(scanned: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """The hand on the flange of an arm: its tool frame is where the arm's own kinematics put it, the fingers open."""
     hand = yaml.safe_load(

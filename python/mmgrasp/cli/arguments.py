@@ -211,7 +211,7 @@ def _add_scan(commands: Commands) -> None:
         "--register",
         action="store_true",
         default=None,
-        help="move each frame onto the map, as far as pose_error of its sensor says that its pose may be off",
+        help="move each frame onto the map, as far as pose_error of its sensor says that its pose may be off; what all frames share is then not in sigma",
     )
     parser.add_argument(
         "--octree",

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from .. import _core
@@ -228,6 +229,11 @@ def _lost(row: dict[str, Any]) -> str:
     return f"; of {tried} the others fell at: " + ", ".join(f"{name} {n}" for name, n in causes)
 
 
+def _shown(name: str) -> str:
+    """A name in a table, whose brackets are no markup."""
+    return escape(printable(name))
+
+
 def _print(rows: list[dict[str, Any]], written: dict[str, Path | None], console: Console) -> None:
     typed = any("type" in grasp for row in rows for grasp in row["grasps"])
     table = Table(title="the best grasp of each object; its probability weighs the criteria")
@@ -236,7 +242,7 @@ def _print(rows: list[dict[str, Any]], written: dict[str, Path | None], console:
         table.add_column(column, justify="left" if column in texts else "right", no_wrap=True)
     for row in rows:
         best = row["grasps"][0] if row["grasps"] else {}
-        cells = [printable(row["name"])] + [printable(best.get("type", "-"))] * typed + [str(len(row["grasps"]))]
+        cells = [_shown(row["name"])] + [_shown(best.get("type", "-"))] * typed + [str(len(row["grasps"]))]
         if best:
             cells.append(f"{best['probability']:.2f}")
             cells += [f"{best['criteria'][share]:.2f}" for share in _SHARES] + [f"{1e3 * best['opening']:.0f}"]

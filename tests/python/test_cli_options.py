@@ -50,15 +50,15 @@ def wrong(action: argparse.Action) -> list[str]:
     kind = getattr(action.type, "__name__", "")
     if action.choices:
         return NO_CHOICES
-    if kind in ("_name", "_address"):
-        return NO_NAMES if kind == "_name" else NO_ADDRESSES
-    if kind in ("_path", "_plan", "_source"):
+    if kind in ("name", "address"):
+        return NO_NAMES if kind == "name" else NO_ADDRESSES
+    if kind in ("path", "plan", "source"):
         return NO_PATHS
     return (
         ["", "x", "=", "=x", "a=/no/such"]
-        if kind == "_package"
+        if kind == "package"
         else ["", "x", "="]
-        if kind in ("_xacro_argument", "_mount")
+        if kind in ("xacro_argument", "mount")
         else NO_NUMBERS
     )
 
@@ -72,16 +72,16 @@ def test_the_parser_was_read() -> None:
 
 
 NO_NUMBER = {
-    "_path",
-    "_plan",
-    "_source",
-    "_name",
-    "_address",
-    "_package",
-    "_xacro_argument",
-    "_mount",
-    "_direction",
-    "_base",
+    "path",
+    "plan",
+    "source",
+    "name",
+    "address",
+    "package",
+    "xacro_argument",
+    "mount",
+    "direction",
+    "base",
 }
 
 

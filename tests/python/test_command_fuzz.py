@@ -89,6 +89,6 @@ def test_every_option_that_names_a_place_is_known() -> None:
     parsers = build_parser()._actions[-1].choices
     assert isinstance(parsers, dict)
     options = [action for name in parsers if name not in ("reproduce", "bench") for action in parsers[name]._actions]
-    paths = [action for action in options if getattr(action.type, "__name__", "") == "_path"]
+    paths = [action for action in options if getattr(action.type, "__name__", "") == "path"]
     writing = {a.dest for a in paths if any(word in (a.help or "") for word in ("writ", "draw", "folder for"))}
     assert writing == set(OUTPUTS)

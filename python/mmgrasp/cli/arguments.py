@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import math
-import os
 import re
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .. import _core
-from ..documents.reading import LONGEST_NAME
+from . import argument_kinds as kinds
 
 if TYPE_CHECKING:  # argparse has no public name for what add_subparsers gives
     Commands = argparse._SubParsersAction["_Parser"]
@@ -56,15 +53,18 @@ def _add_plan(commands: Commands) -> None:
     parser = commands.add_parser(
         "plan", help="plan a part-supply round and write plan, report, pictures and trajectories"
     )
-    parser.add_argument("scenario", type=_path, help="scenario file (YAML)")
-    parser.add_argument("-o", "--out", type=_path, required=True, metavar="DIR", help="folder to write into")
+    parser.add_argument("scenario", type=kinds.path, help="scenario file (YAML)")
+    parser.add_argument("-o", "--out", type=kinds.path, required=True, metavar="DIR", help="folder to write into")
     parser.add_argument(
-        "--robot", type=_source, metavar="NAME", help="another robot: a shipped profile (tiago, ...) or a profile file"
+        "--robot",
+        type=kinds.source,
+        metavar="NAME",
+        help="another robot: a shipped profile (tiago, ...) or a profile file",
     )
     parser.add_argument(
-        "--threads", type=_threads, metavar="N", help="0: all (default); the plan does not depend on it"
+        "--threads", type=kinds.threads, metavar="N", help="0: all (default); the plan does not depend on it"
     )
-    parser.add_argument("--seed", type=_seed, metavar="N", help="same seed, same plan")
+    parser.add_argument("--seed", type=kinds.seed, metavar="N", help="same seed, same plan")
     parser.add_argument(
         "--drive-by",
         action="store_true",
@@ -75,71 +75,81 @@ def _add_plan(commands: Commands) -> None:
 
 def _add_verify(commands: Commands) -> None:
     parser = commands.add_parser("verify", help="check a finished plan without the planner")
-    parser.add_argument("plan", type=_plan, help="plan.json, or the folder it lies in")
-    parser.add_argument("--scenario", type=_path, metavar="FILE", help="compare with this scenario, read anew")
-    parser.add_argument("--robot", type=_source, metavar="NAME", help="the robot profile the plan was made with")
+    parser.add_argument("plan", type=kinds.plan, help="plan.json, or the folder it lies in")
+    parser.add_argument("--scenario", type=kinds.path, metavar="FILE", help="compare with this scenario, read anew")
+    parser.add_argument("--robot", type=kinds.source, metavar="NAME", help="the robot profile the plan was made with")
     parser.add_argument(
         "--samples",
-        type=_count(1, 1_000_000, "base poses"),
+        type=kinds.count(1, 1_000_000, "base poses"),
         metavar="N",
         help="base poses drawn at each stop (default 1000)",
     )
-    parser.add_argument("--threads", type=_threads, metavar="N", help="0: all (default)")
+    parser.add_argument("--threads", type=kinds.threads, metavar="N", help="0: all (default)")
     parser.add_argument("--json", action="store_true", help="print the verdict as JSON")
 
 
 def _add_arrive(commands: Commands) -> None:
     parser = commands.add_parser("arrive", help="plan the picks of a stop again, from where the base really stands")
-    parser.add_argument("plan", type=_plan, help="plan.json, or the folder it lies in")
+    parser.add_argument("plan", type=kinds.plan, help="plan.json, or the folder it lies in")
     parser.add_argument(
-        "--stop", type=_count(1, 1_000_000, "stops"), required=True, metavar="K", help="the plan's K-th stop, from 1"
+        "--stop",
+        type=kinds.count(1, 1_000_000, "stops"),
+        required=True,
+        metavar="K",
+        help="the plan's K-th stop, from 1",
     )
     parser.add_argument(
         "--pose",
-        type=_coordinate,
+        type=kinds.coordinate,
         nargs=3,
         required=True,
         metavar=("X", "Y", "THETA"),
         help="measured base pose [m, m, rad]",
     )
     parser.add_argument(
-        "--picked", type=_name, nargs="+", default=[], metavar="PART", help="parts that are gone already"
+        "--picked", type=kinds.name, nargs="+", default=[], metavar="PART", help="parts that are gone already"
     )
-    parser.add_argument("--scenario", type=_path, metavar="FILE", help="the plan's scenario, where it has moved")
-    parser.add_argument("--robot", type=_source, metavar="NAME", help="the robot profile the plan was made with")
-    parser.add_argument("-o", "--out", type=_path, metavar="DIR", help="write arrival.json and the trajectories there")
+    parser.add_argument("--scenario", type=kinds.path, metavar="FILE", help="the plan's scenario, where it has moved")
+    parser.add_argument("--robot", type=kinds.source, metavar="NAME", help="the robot profile the plan was made with")
+    parser.add_argument(
+        "-o", "--out", type=kinds.path, metavar="DIR", help="write arrival.json and the trajectories there"
+    )
     parser.add_argument("--json", action="store_true", help="print arrival.json")
 
 
 def _add_init(commands: Commands) -> None:
     parser = commands.add_parser("init", help="write a first scenario for a robot, with comments")
-    parser.add_argument("urdf", type=_source, help="a URDF, or a .xacro file that expands to one")
+    parser.add_argument("urdf", type=kinds.source, help="a URDF, or a .xacro file that expands to one")
     parser.add_argument(
-        "map", type=_path, nargs="?", help="map.yaml of map_server or SLAM: the counter is put where it is free"
+        "map", type=kinds.path, nargs="?", help="map.yaml of map_server or SLAM: the counter is put where it is free"
     )
     parser.add_argument(
         "-o",
         "--out",
-        type=_path,
+        type=kinds.path,
         default=Path("scenario.yaml"),
         metavar="FILE",
         help="where it is written (default scenario.yaml); no file is replaced",
     )
-    parser.add_argument("--srdf", type=_path, metavar="FILE", help="default: one of the URDF's name beside it, if any")
+    parser.add_argument(
+        "--srdf", type=kinds.path, metavar="FILE", help="default: one of the URDF's name beside it, if any"
+    )
     _add_robot_files(parser)
     parser.add_argument(
         "--mount",
         action="append",
         default=[],
         metavar="FILE=LINK",
-        type=_mount,
+        type=kinds.mount,
         help="another robot on a link of this one: an arm on a base, a gripper on an arm; may be repeated",
     )
     parser.add_argument("--base", choices=["diff_drive", "omni"], help="default: told from the wheels")
-    parser.add_argument("--group", type=_name, metavar="NAME", help="SRDF group of the arm (default: the longest arm)")
+    parser.add_argument(
+        "--group", type=kinds.name, metavar="NAME", help="SRDF group of the arm (default: the longest arm)"
+    )
     parser.add_argument(
         "--tool-link",
-        type=_name,
+        type=kinds.name,
         metavar="LINK",
         help="the tool frame (default: found, or made between the finger tips)",
     )
@@ -147,8 +157,8 @@ def _add_init(commands: Commands) -> None:
 
 def _add_check(commands: Commands) -> None:
     parser = commands.add_parser("check", help="tell what mmgrasp understands of a robot")
-    parser.add_argument("urdf", type=_path, help="a URDF, or a .xacro file that expands to one")
-    parser.add_argument("--srdf", type=_path, metavar="FILE")
+    parser.add_argument("urdf", type=kinds.path, help="a URDF, or a .xacro file that expands to one")
+    parser.add_argument("--srdf", type=kinds.path, metavar="FILE")
     _add_robot_files(parser)
     parser.add_argument(
         "--base",
@@ -157,12 +167,14 @@ def _add_check(commands: Commands) -> None:
     )
     parser.add_argument(
         "--mesh-tolerance",
-        type=_length,
+        type=kinds.length,
         default=0.0,
         metavar="M",
         help="how far simpler solids may stick out of collision meshes [m] (default 0: only the same solid)",
     )
-    parser.add_argument("--write-srdf", type=_path, metavar="FILE", help="write an SRDF with the computed link pairs")
+    parser.add_argument(
+        "--write-srdf", type=kinds.path, metavar="FILE", help="write an SRDF with the computed link pairs"
+    )
     parser.add_argument("--json", action="store_true")
 
 
@@ -171,39 +183,50 @@ def _add_scan(commands: Commands) -> None:
         "scan", help="make a map of surfaces from a folder of depth images with poses, and a report"
     )
     parser.add_argument(
-        "frames", type=_path, help="folder in the layout of TUM RGB-D, Redwood / Open3D, 7-Scenes or mmgrasp's .npz"
+        "frames",
+        type=kinds.path,
+        help="folder in the layout of TUM RGB-D, Redwood / Open3D, 7-Scenes or mmgrasp's .npz",
     )
     parser.add_argument(
         "-o",
         "--out",
-        type=_path,
+        type=kinds.path,
         required=True,
         metavar="DIR",
         help="folder to write into; a run goes on where it ended",
     )
     parser.add_argument(
         "--sensors",
-        type=_path,
+        type=kinds.path,
         metavar="FILE",
         help="YAML about the cameras (default: sensors.yaml in the folder, if any)",
     )
     parser.add_argument(
-        "--voxel", type=_voxel, metavar="M", help="edge of a voxel [m] (default: what a pixel covers, at least 0.002)"
+        "--voxel",
+        type=kinds.voxel,
+        metavar="M",
+        help="edge of a voxel [m] (default: what a pixel covers, at least 0.002)",
     )
     parser.add_argument(
         "--truncation",
-        type=_voxel,
+        type=kinds.voxel,
         metavar="M",
         help="how far from a surface distances are kept [m] (default: 5 voxels, more for noisy cameras)",
     )
     parser.add_argument(
-        "--every", type=_count(1, 1_000_000, "frames"), default=1, metavar="N", help="take every Nth frame (default 1)"
+        "--every",
+        type=kinds.count(1, 1_000_000, "frames"),
+        default=1,
+        metavar="N",
+        help="take every Nth frame (default 1)",
     )
-    parser.add_argument("--up", type=_direction, metavar="X,Y,Z", help="where up is in the world of the poses")
-    parser.add_argument("--max-memory", type=_megabytes, metavar="MB", help="largest map in memory [MB] (default 2000)")
+    parser.add_argument("--up", type=kinds.direction, metavar="X,Y,Z", help="where up is in the world of the poses")
+    parser.add_argument(
+        "--max-memory", type=kinds.megabytes, metavar="MB", help="largest map in memory [MB] (default 2000)"
+    )
     parser.add_argument(
         "--outlier-gate",
-        type=_gate,
+        type=kinds.gate,
         metavar="K",
         help="leave out depths more than K standard deviations from their neighbours or from what three frames saw (default: none)",
     )
@@ -215,7 +238,7 @@ def _add_scan(commands: Commands) -> None:
     )
     parser.add_argument(
         "--octree",
-        type=_voxel,
+        type=kinds.voxel,
         metavar="M",
         help="also write occupancy.bt: OctoMap's free, occupied and unknown cells of this edge [m]",
     )
@@ -226,55 +249,62 @@ def _add_scan(commands: Commands) -> None:
 
 def _add_grasp(commands: Commands) -> None:
     parser = commands.add_parser("grasp", help="rank grasps of the objects in a map that `mmgrasp scan` made")
-    parser.add_argument("map", type=_path, help="folder that `mmgrasp scan` wrote")
+    parser.add_argument("map", type=kinds.path, help="folder that `mmgrasp scan` wrote")
     parser.add_argument(
         "--gripper",
-        type=_source,
+        type=kinds.source,
         metavar="NAME",
         help="whose gripper: a shipped profile (tiago, ..., sdhlike), or the file of a robot profile or scenario",
     )
     parser.add_argument(
         "--robot",
-        type=_source,
+        type=kinds.source,
         metavar="NAME",
         help="only grasps that this robot's arm reaches without collisions, with its own gripper; named like --gripper",
     )
     parser.add_argument(
         "--base",
-        type=_base,
+        type=kinds.base,
         metavar="X,Y,Z,HEADING",
         help="where the root of --robot stands in the map's world [m, m, m, rad] (default 0,0,0,0)",
     )
-    parser.add_argument("--object", type=_name, metavar="NAME", help="only this object of objects.json")
-    parser.add_argument("-o", "--out", type=_path, metavar="FILE", help="also write all grasps as JSON")
+    parser.add_argument("--object", type=kinds.name, metavar="NAME", help="only this object of objects.json")
+    parser.add_argument("-o", "--out", type=kinds.path, metavar="FILE", help="also write all grasps as JSON")
     parser.add_argument(
-        "--png", type=_path, metavar="FILE", help="also draw the best grasp of each object with its contact patches"
+        "--png",
+        type=kinds.path,
+        metavar="FILE",
+        help="also draw the best grasp of each object with its contact patches",
     )
     parser.add_argument(
         "--samples",
-        type=_count(1, 100_000, "samples"),
+        type=kinds.count(1, 100_000, "samples"),
         default=200,
         metavar="N",
         help="grasps tried for an object, with each type of grasp",
     )
     parser.add_argument(
         "--sigmas",
-        type=_sigmas,
+        type=kinds.sigmas,
         default=2.0,
         metavar="K",
         help="standard deviations of the map's surface that hand and arm keep free (default 2)",
     )
     parser.add_argument(
-        "--grasps", type=_count(1, 1000, "grasps"), default=20, metavar="N", help="best kept of an object (default 20)"
+        "--grasps",
+        type=kinds.count(1, 1000, "grasps"),
+        default=20,
+        metavar="N",
+        help="best kept of an object (default 20)",
     )
-    parser.add_argument("--seed", type=_seed, default=1, metavar="N", help="same seed, same grasps")
+    parser.add_argument("--seed", type=kinds.seed, default=1, metavar="N", help="same seed, same grasps")
     parser.add_argument("--json", action="store_true", help="print all grasps as JSON")
 
 
 def _add_pipe(commands: Commands) -> None:
     parser = commands.add_parser("pipe", help="find the grasp that carries a pipe along a path and bends it least")
-    parser.add_argument("problem", type=_source, help="problem file (YAML), or the name of a shipped one (pipe1)")
-    parser.add_argument("-o", "--out", type=_path, required=True, metavar="DIR", help="folder to write into")
+    parser.add_argument("problem", type=kinds.source, help="problem file (YAML), or the name of a shipped one (pipe1)")
+    parser.add_argument("-o", "--out", type=kinds.path, required=True, metavar="DIR", help="folder to write into")
     parser.add_argument(
         "--algorithm",
         choices=_core.grasp_search_names(),
@@ -282,9 +312,9 @@ def _add_pipe(commands: Commands) -> None:
         help=f"in place of the problem's: {', '.join(_core.grasp_search_names())} (the last proves its answer)",
     )
     parser.add_argument(
-        "--threads", type=_threads, metavar="N", help="0: all (default); the answer does not depend on it"
+        "--threads", type=kinds.threads, metavar="N", help="0: all (default); the answer does not depend on it"
     )
-    parser.add_argument("--seed", type=_seed, metavar="N", help="same seed, same grasp")
+    parser.add_argument("--seed", type=kinds.seed, metavar="N", help="same seed, same grasp")
     parser.add_argument("--no-pictures", action="store_true", help="leave the pictures out of the report")
     parser.add_argument("--json", action="store_true", help="print the result as JSON")
 
@@ -293,21 +323,23 @@ def _add_segment(commands: Commands) -> None:
     parser = commands.add_parser(
         "segment", help="cut a part into the simple bodies it is composed of, and say where it can be held"
     )
-    parser.add_argument("mesh", type=_path, help="STL, OBJ, PLY or DAE")
-    parser.add_argument("-o", "--out", type=_path, metavar="DIR", help="folder for segments.json and the pictures")
+    parser.add_argument("mesh", type=kinds.path, help="STL, OBJ, PLY or DAE")
+    parser.add_argument("-o", "--out", type=kinds.path, metavar="DIR", help="folder for segments.json and the pictures")
     parser.add_argument(
         "--unit", choices=["m", "cm", "mm", "inch"], default="m", help="what one unit of the file is (default m)"
     )
-    parser.add_argument("--seed", type=_seed, default=1, metavar="N", help="same seed, same segments")
-    parser.add_argument("--threads", type=_threads, default=0, metavar="N", help="0: all (default)")
+    parser.add_argument("--seed", type=kinds.seed, default=1, metavar="N", help="same seed, same segments")
+    parser.add_argument("--threads", type=kinds.threads, default=0, metavar="N", help="0: all (default)")
     parser.add_argument("--no-pictures", action="store_true", help="leave the pictures out")
     parser.add_argument("--json", action="store_true", help="print segments.json instead of the table")
 
 
 def _add_grippers(commands: Commands) -> None:
     parser = commands.add_parser("grippers", help="find the least set of grippers for an assembly, from its meshes")
-    parser.add_argument("assembly", type=_source, help="assembly file (YAML), or the name of a shipped one (pulley)")
-    parser.add_argument("-o", "--out", type=_path, required=True, metavar="DIR", help="folder to write into")
+    parser.add_argument(
+        "assembly", type=kinds.source, help="assembly file (YAML), or the name of a shipped one (pulley)"
+    )
+    parser.add_argument("-o", "--out", type=kinds.path, required=True, metavar="DIR", help="folder to write into")
     parser.add_argument("--no-pictures", action="store_true", help="leave the pictures out of the report")
     parser.add_argument("--json", action="store_true", help="print the result as JSON")
 
@@ -316,15 +348,15 @@ def _add_reproduce(commands: Commands) -> None:
     parser = commands.add_parser(
         "reproduce", help="compute a paper's tables and figures again, beside the paper's numbers"
     )
-    parser.add_argument("name", type=_name, nargs="*", help="p1-table-3.3, ... or all; none: list them")
+    parser.add_argument("name", type=kinds.name, nargs="*", help="p1-table-3.3, ... or all; none: list them")
     parser.add_argument("--quick", action="store_true", help="smaller set-ups that show the same in seconds")
     parser.add_argument(
         "--json", action="store_true", help="print JSON instead of Markdown: an object for one name, else a list"
     )
     parser.add_argument(
-        "--out", type=_path, metavar="DIR", help="also write JSON and pictures there, and a page of all of them"
+        "--out", type=kinds.path, metavar="DIR", help="also write JSON and pictures there, and a page of all of them"
     )
-    parser.add_argument("--seed", type=_seed, default=1, metavar="N", help="of whatever is random (default 1)")
+    parser.add_argument("--seed", type=kinds.seed, default=1, metavar="N", help="of whatever is random (default 1)")
     _add_cluster_options(parser)
 
 
@@ -333,33 +365,39 @@ def _add_bench(commands: Commands) -> None:
     parser.add_argument("name", choices=["mbm"], help="mbm: MotionBenchMaker's problems for Panda and UR5")
     parser.add_argument(
         "--data",
-        type=_path,
+        type=kinds.path,
         default=Path("../shared/data"),
         metavar="DIR",
         help="folder with robots/ and planning/ (default ../shared/data)",
     )
-    parser.add_argument("--robot", type=_name, nargs="+", default=["panda", "ur5"], metavar="NAME")
-    parser.add_argument("--set", type=_name, nargs="+", metavar="NAME", help="bookshelf_small, ...; default: all seven")
+    parser.add_argument("--robot", type=kinds.name, nargs="+", default=["panda", "ur5"], metavar="NAME")
+    parser.add_argument(
+        "--set", type=kinds.name, nargs="+", metavar="NAME", help="bookshelf_small, ...; default: all seven"
+    )
     parser.add_argument(
         "--limit",
-        type=_count(1, 1_000_000, "problems"),
+        type=kinds.count(1, 1_000_000, "problems"),
         default=50,
         metavar="N",
         help="problems of each set (default 50)",
     )
     parser.add_argument(
-        "--seeds", type=_count(1, 1_000_000, "runs"), default=1, metavar="N", help="runs of each problem (default 1)"
+        "--seeds",
+        type=kinds.count(1, 1_000_000, "runs"),
+        default=1,
+        metavar="N",
+        help="runs of each problem (default 1)",
     )
-    parser.add_argument("--planner", type=_name, default="rrt_connect", help="a name of planner_names()")
+    parser.add_argument("--planner", type=kinds.name, default="rrt_connect", help="a name of planner_names()")
     parser.add_argument("--json", action="store_true")
 
 
 def _add_view(commands: Commands) -> None:
     parser = commands.add_parser("view", help="show a plan in the browser, or draw it")
-    parser.add_argument("plan", type=_plan, help="plan.json, or the folder it lies in")
-    parser.add_argument("--png", type=_path, metavar="FILE", help="write a picture instead of opening the browser")
-    parser.add_argument("--film", type=_path, metavar="FILE", help="write the whole round as an animated GIF")
-    parser.add_argument("--port", type=_count(0, 65535, ""), default=8080, metavar="N")
+    parser.add_argument("plan", type=kinds.plan, help="plan.json, or the folder it lies in")
+    parser.add_argument("--png", type=kinds.path, metavar="FILE", help="write a picture instead of opening the browser")
+    parser.add_argument("--film", type=kinds.path, metavar="FILE", help="write the whole round as an animated GIF")
+    parser.add_argument("--port", type=kinds.count(0, 65535, ""), default=8080, metavar="N")
 
 
 def _add_robot_files(parser: argparse.ArgumentParser) -> None:
@@ -369,7 +407,7 @@ def _add_robot_files(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="NAME=VALUE",
-        type=_xacro_argument,
+        type=kinds.xacro_argument,
         help="an argument of the xacro file; may be repeated",
     )
     parser.add_argument(
@@ -377,7 +415,7 @@ def _add_robot_files(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="NAME=DIR",
-        type=_package,
+        type=kinds.package,
         help="where package://NAME/... lies; may be repeated",
     )
 
@@ -386,138 +424,16 @@ def _add_cluster_options(parser: argparse.ArgumentParser) -> None:
     where = parser.add_mutually_exclusive_group()
     where.add_argument(
         "--workers",
-        type=_count(0, 1024, "processes"),
+        type=kinds.count(0, 1024, "processes"),
         metavar="N",
         help="spread the work over N local processes (0: one a core)",
     )
     where.add_argument(
-        "--scheduler", type=_address, metavar="ADDRESS", help="spread the work over a Dask cluster, tcp://host:port"
+        "--scheduler",
+        type=kinds.address,
+        metavar="ADDRESS",
+        help="spread the work over a Dask cluster, tcp://host:port",
     )
     parser.add_argument(
-        "--shards", type=_path, metavar="DIR", help="where --workers and --scheduler keep finished shards"
+        "--shards", type=kinds.path, metavar="DIR", help="where --workers and --scheduler keep finished shards"
     )
-
-
-def _path(text: str) -> Path:
-    if not text or "\0" in text:
-        raise argparse.ArgumentTypeError(f"{text!r}: must be a path that is not empty")
-    return Path(text)
-
-
-def _plan(text: str) -> Path:
-    """A plan's file, or the folder that `mmgrasp plan` filled."""
-    path = _path(text)
-    inside = path / "plan.json"
-    return inside if os.path.isdir(path) else path
-
-
-def _source(text: str) -> str:
-    """Path of a file, or the name of a shipped one."""
-    return str(_path(text))
-
-
-def _name(text: str) -> str:
-    """A name that can stand in a file and on a terminal; whether there is one is looked up later."""
-    if not text or len(text) > LONGEST_NAME or not text.isprintable():
-        raise argparse.ArgumentTypeError(f"{text!r:.80}: must be a name of 1 to {LONGEST_NAME} printable characters")
-    return text
-
-
-def _address(text: str) -> str:
-    """The address of a Dask scheduler."""
-    found = re.fullmatch(r"[a-z]+://(?:\[[0-9a-fA-F:]+\]|[^\s/:]+):([0-9]{1,5})", text, re.ASCII)
-    if not found or not 1 <= int(found[1]) <= 65535:
-        raise argparse.ArgumentTypeError(f"{text!r:.80}: must be an address tcp://host:port")
-    return text
-
-
-@dataclass(frozen=True)
-class _Number:
-    """A number in plain digits, with its bounds and their unit."""
-
-    least: float
-    most: float
-    unit: str
-    is_whole: bool = False
-    scale: float = 1
-    """The value taken is so much times what is written."""
-
-    def __call__(self, text: str) -> Any:
-        if self.is_whole:
-            plain = text.isascii() and text.isdigit() and len(text) < 20
-            if not plain or not self.least <= int(text) <= self.most:
-                raise argparse.ArgumentTypeError(
-                    f"{text!r}: must be a whole number, at least {self.least} and at most {self.most} {self.unit}".rstrip()
-                )
-            return int(text)
-        value = _number(text)
-        if not self.least <= value <= self.most:
-            raise argparse.ArgumentTypeError(
-                f"{text!r}: must be a number from {self.least:.10g} to {self.most:.10g} {self.unit}".rstrip()
-            )
-        return value * self.scale
-
-
-def _count(least: int, most: int, unit: str) -> _Number:
-    return _Number(least, most, unit, is_whole=True)
-
-
-_threads = _count(0, 1024, "threads")
-_seed = _count(0, 2**31 - 1, "")
-
-
-_length = _Number(0, 1, "m")
-_voxel = _Number(1e-4, 10, "m")
-_sigmas = _Number(0, 100, "")
-_gate = _Number(3, 1000, "standard deviations")
-_megabytes = _Number(1, 1e7, "MB", scale=1e6)
-_coordinate = _Number(-1e6, 1e6, "m or rad")
-
-
-def _direction(text: str) -> list[float]:
-    values = [_number(part) for part in text.split(",")]
-    if len(values) != 3 or not all(abs(x) <= 1e6 for x in values) or not any(abs(x) > 1e-6 for x in values):
-        raise argparse.ArgumentTypeError(
-            f"{text!r}: must be a direction X,Y,Z other than 0,0,0, of numbers up to 1e+06"
-        )
-    return values
-
-
-def _base(text: str) -> list[float]:
-    values = [_number(part) for part in text.split(",")]
-    if len(values) != 4 or not all(abs(x) <= 1e6 for x in values):
-        raise argparse.ArgumentTypeError(f"{text!r}: must be X,Y,Z,HEADING, four numbers of at most 1e+06 m and rad")
-    return values
-
-
-def _number(text: str) -> float:
-    """NaN for what is none."""
-    plain = text.isascii() and "_" not in text and text == text.strip()
-    try:
-        return float(text) if plain else math.nan
-    except ValueError:
-        return math.nan
-
-
-def _package(text: str) -> tuple[str, str]:
-    name, found, folder = text.partition("=")
-    if not found or not name or not folder:
-        raise argparse.ArgumentTypeError(f"{text!r} is not NAME=DIR")
-    if not Path(folder).is_dir():
-        raise argparse.ArgumentTypeError(f"{folder!r} is no folder")
-    return name, folder
-
-
-def _mount(text: str) -> tuple[str, str]:
-    """File of a robot and the link it is put on."""
-    name, found, link = text.rpartition("=")
-    if not found or not name or not link or not text.isprintable():
-        raise argparse.ArgumentTypeError(f"{text!r:.80} is not FILE=LINK")
-    return name, link
-
-
-def _xacro_argument(text: str) -> tuple[str, str]:
-    name, found, value = text.partition("=")
-    if not found or not name:
-        raise argparse.ArgumentTypeError(f"{text!r} is not NAME=VALUE")
-    return name.removesuffix(":"), value  # xacro's own command writes NAME:=VALUE

@@ -64,7 +64,7 @@ def test_frames_are_moved_onto_the_map(tmp_path: Path) -> None:
     assert (tmp_path / "map" / "map.sdf").read_bytes() == (tmp_path / "direct.sdf").read_bytes()
 
 
-def test_two_runs_give_the_bytes_of_one(tmp_path: Path) -> None:
+def test_two_runs_give_the_bytes_of_one(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Half of the frames first, then all of them."""
     exact = shots(6, SCALE)
     write_npz(tmp_path / "frames", displaced(exact))
@@ -77,7 +77,10 @@ def test_two_runs_give_the_bytes_of_one(tmp_path: Path) -> None:
     assert run(tmp_path / "frames", tmp_path / "parts", *options) == 0
     for path in later.iterdir():
         path.rename(tmp_path / "frames" / path.name)
+    capsys.readouterr()
     assert run(tmp_path / "frames", tmp_path / "parts", "--octree", "0.02") == 0  # the options are those of the map
+    printed = " ".join(capsys.readouterr().out.split())
+    assert "Frames were moved onto the map" in printed and "more than 5 standard deviations off" in printed
     assert run(tmp_path / "frames", tmp_path / "whole", "--octree", "0.02", *options) == 0
     for name in ("map.sdf", "progress.json", "occupancy.bt"):
         assert (tmp_path / "parts" / name).read_bytes() == (tmp_path / "whole" / name).read_bytes(), name
@@ -111,6 +114,12 @@ def test_a_map_is_gone_on_with_as_it_was_begun(tmp_path: Path, capsys: pytest.Ca
         assert run(tmp_path / "frames", tmp_path / "map", *more) == 2
         assert said in " ".join(capsys.readouterr().err.split())
     assert run(tmp_path / "frames", tmp_path / "map") == 0
+    (tmp_path / "map" / "progress.json").unlink()
+    before = contents(tmp_path / "map")
+    capsys.readouterr()
+    assert run(tmp_path / "frames", tmp_path / "map") == 2
+    assert "there is no progress.json beside it" in " ".join(capsys.readouterr().err.split())
+    assert contents(tmp_path / "map") == before
     for wrong in ("2", "nan", "-4"):
         with pytest.raises(SystemExit):
             run(tmp_path / "frames", tmp_path / "other", "--outlier-gate", wrong)

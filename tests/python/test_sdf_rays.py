@@ -171,3 +171,41 @@ def test_rays_that_are_none_are_named(sdf: mg.ProbabilisticSdf) -> None:
         sdf.cast_rays(np.zeros((3, 3)), [[1, 0, 0], [0, 1, 0], [0, 0, 0]])
     with pytest.raises(mg.InvalidInput, match="must be as many as origins"):
         sdf.cast_rays(np.zeros((3, 3)), np.ones((2, 3)))
+
+
+def test_nothing_is_certain_where_frames_disagree() -> None:
+    """Poses off by 6 mm and 8 mrad: later frames look through what earlier ones saw, and cells do not fit together."""
+    rng = np.random.default_rng(7)
+    pinhole = mapping.PinholeCamera(320, 240, 300, 300, 159.5, 119.5, 0.1, 3.0)
+    camera = mapping.DepthCamera(pinhole, mapping.DepthNoise(constant=0.001))
+    covariance = np.diag([0.006**2] * 3 + [0.008**2] * 3)
+    scene = [
+        mg.LinkShape(mg.collision.Plane([0, 0, 1], 0.0)),
+        mg.LinkShape(mg.Box([0.12, 0.08, 0.06]), mg.pose([0.06, 0.0, 0.03], rpy=[0, 0, 0.4])),
+        mg.LinkShape(mg.Box([0.06, 0.06, 0.10]), mg.pose([-0.08, -0.02, 0.05])),
+    ]
+    sdf = mg.ProbabilisticSdf(voxel=0.003, truncation=0.02)
+    for k in range(16):
+        angle = np.pi / 8 * k
+        eye = np.array([0.4 * np.cos(angle), 0.4 * np.sin(angle), 0.45 if k % 2 == 0 else 0.27])
+        image = mapping.render_depth(scene, pinhole, look_at(eye, np.array([0, 0, 0.04])), noise=0.001, seed=k + 1)
+        error = mg.pose(0.006 * rng.standard_normal(3), rpy=0.008 * rng.standard_normal(3))
+        sdf.integrate(
+            mapping.DepthImage(image.depth, pinhole, image.T_world_camera @ error), camera, pose_covariance=covariance
+        )
+    mean, sigma, known = sdf.query(rng.uniform([-0.2, -0.2, -0.03], [0.2, 0.2, 0.15], (400_000, 3)))
+    carved = known & (mean >= 0.02 - 1e-6)
+    assert carved.sum() > 10 and sigma[known].min() > 1e-4
+    assert (sigma[carved] > 0.02 / 6).all() and (sigma[carved] <= 0.02 / 3 * (1 + 1e-3)).all()
+
+    angles = rng.uniform(0, 2 * np.pi, 40_000)
+    origins = np.stack([0.5 * np.cos(angles), 0.5 * np.sin(angles), rng.uniform(0.15, 0.6, len(angles))], axis=1)
+    hits = sdf.cast_rays(origins, rng.uniform([-0.15, -0.15, 0], [0.15, 0.15, 0.12], origins.shape) - origins)
+    assert hits.sigma[hits.hit].min() > 1e-4
+    # Between cells that do not fit together sigma is no less than how far the map is from zero just behind.
+    hit = np.flatnonzero(hits.hit)
+    apart = hit[np.abs(sdf.query(hits.point[hit])[0]) > 0.001]
+    assert len(apart) > 5
+    ahead = (hits.point - origins)[apart]
+    behind = sdf.query(hits.point[apart] + 0.00015 * ahead / np.linalg.norm(ahead, axis=1)[:, None])[0]
+    assert (hits.sigma[apart] >= 0.999 * np.abs(np.minimum(behind, 0))).all()

@@ -70,6 +70,11 @@ def run_scan(arguments: argparse.Namespace, console: Console) -> int:
 def _begin(arguments: argparse.Namespace, frames: FrameFolder, folder: OutputFolder) -> Scan:
     """A new map, or that of an earlier run with the same options."""
     path = folder.path / PROGRESS_FILE
+    if not arguments.start_over and (folder.path / MAP).exists() and not path.exists():
+        raise InvalidInput(
+            f"{printable(str(folder.path / MAP))}: there is no {PROGRESS_FILE} beside it, which says what frames it holds: "
+            "put that back, or make the map anew with --start-over"
+        )
     if arguments.start_over or not path.exists():
         chosen = {name: getattr(arguments, name) for name in _OPTIONS}
         return Scan.begin(choose_options(frames, **{**chosen, "register": bool(arguments.register)}))

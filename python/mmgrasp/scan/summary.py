@@ -57,6 +57,10 @@ def notes(scan: Scan, folder: FrameFolder, objects: dict[str, Any]) -> list[str]
             f"No sensors.yaml: assumed are the noise of a first Kinect (structured light), the library's range of depths, exact poses, "
             f"and {shown} units in a metre, as {names} has it. Sigma is as good as that."
         )
+    if scan.options.register:
+        out.append("Frames were moved onto the map: what the first ones are wrong by is in all, and not in sigma.")
+    if scan.options.outlier_gate:
+        out.append(f"Depths more than {scan.options.outlier_gate:g} standard deviations off were left out.")
     if scan.absent:
         more = f" and {len(scan.absent) - 1} more" if len(scan.absent) > 1 else ""
         out.append(f"In the map, but no longer in the folder: {scan.absent[0]}{more}.")

@@ -285,6 +285,10 @@ TEST(Eigengrasp, HandsWithoutFingertipsAreRefused) {
   };
   const GraspType one = type_of("one finger", {-90, 0, -25, 25, 0, 0, 90}, {-90, 0, 12, -12, 0, 0, 90});
   EXPECT_NE(message(one, Vector3d::UnitZ()).find("hand = 1 fingertips"), std::string::npos) << message(one, {0, 0, 1});
+  const GraspType spreading = type_of("spreading", {-90, 0, -25, 25, -25, 25, 90}, {-90, 0, 12, -12, 12, -12, 0});
+  EXPECT_NE(message(spreading, Vector3d::UnitZ()).find("hand = spread: a group of joints that closes no fingertip"),
+            std::string::npos)
+      << message(spreading, Vector3d::UnitZ());
   const GraspType still{"still", kPinch.open, kPinch.open};
   EXPECT_NE(message(still, Vector3d::UnitZ()).find("no group of joints closes"), std::string::npos);
   EXPECT_NE(message(kPinch, Vector3d::UnitY()).find("close along it"), std::string::npos);

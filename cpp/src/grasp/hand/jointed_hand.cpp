@@ -122,6 +122,10 @@ class JointedHand final : public HandModel {
         pad_group_.push_back(group);
       }
     }
+    for (int group = 0; group < groups(); ++group) {
+      require(std::find(pad_group_.begin(), pad_group_.end(), group) != pad_group_.end(), "hand", closing_[group],
+              "a group of joints that closes no fingertip of its own must have one value, opened and closed");
+    }
     require(pad_link_.size() >= 2, "hand", std::to_string(pad_link_.size()) + " fingertips",
             "at least two that its closing groups move are needed");
   }

@@ -22,6 +22,18 @@ struct UnitDirection {
   Eigen::Vector3d unit;
 };
 
+/// Standard deviation of the surface at a hit. Between cells that do not fit together, in front and behind, the map is
+/// not zero: how far it is from that counts, on the side that lies behind.
+double sigma_at(SdfSampler& sampler, const Eigen::Vector3d& hit, const Eigen::Vector3d& direction, double voxel) {
+  Sample sample = sampler.at(hit);
+  if (std::abs(sample.mean) > 0.01 * voxel) {
+    const Sample behind = sampler.at(hit + 0.05 * voxel * direction);
+    if (behind.known && behind.mean <= 0) sample = behind;
+    sample.variance += sample.mean * sample.mean;
+  }
+  return std::sqrt(sample.variance);
+}
+
 /// Fetches what is read and written of a ray.
 void prefetch(const Eigen::Matrix3Xd& origins, const Eigen::Matrix3Xd& directions, Eigen::Index i, const SdfHits& out) {
   const auto* const point = out.point.data() + 3 * i;
@@ -55,7 +67,7 @@ void cast_rays(const SdfGrid& grid, CrossingCells& crossing, const Eigen::Matrix
     out.distance[i] = t / direction.length;
     out.point.col(i) = point;
     out.normal.col(i) = normal.isZero(0) ? -direction.unit : normal;  // zero at the rim of what was seen
-    out.sigma[i] = std::sqrt(sampler.at(point).variance);
+    out.sigma[i] = sigma_at(sampler, point, direction.unit, grid.options.voxel);
   }
 }
 

@@ -67,6 +67,7 @@ class SdfSampler {
       out.seen = Seen::surface;
     } else {
       out.mean = static_cast<float>(grid_.options.truncation);
+      out.variance = out.mean * out.mean / 9;  // depths less certain than a third of the truncation are not used
       out.seen = Seen::free;
       out.looked_through = false;
     }

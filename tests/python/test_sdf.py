@@ -49,6 +49,23 @@ def test_from_frames_to_answers(tmp_path: Path) -> None:
     assert np.array_equal(again.points()[0], points)
 
 
+@pytest.mark.parametrize("distance", ["to_plane", "along_ray"])
+def test_maps_of_wide_and_noisy_cameras_are_read_back(tmp_path: Path, distance: str) -> None:
+    """Pixels at the rim look 1.8 times as far as their depth; none moves a voxel by more than the truncation."""
+    wide = mg.mapping.PinholeCamera(160, 120, 67, 67, 79.5, 59.5, 0.1, 3.0)
+    ball = [mg.LinkShape(mg.Sphere(0.5))]
+    camera = mg.mapping.DepthCamera(wide, mg.mapping.DepthNoise(constant=0.003))
+    sdf = mg.ProbabilisticSdf(voxel=0.003, truncation=0.010, distance=distance)
+    for angle in (0.5, 0.7, 0.9):  # the ball stands at the rim of the image
+        T = mg.mapping.look_down([0, 0, 1.0]) @ mg.pose([0, 0, 0], rpy=[0, angle, 0])
+        sdf.integrate(mg.mapping.render_depth(ball, wide, T, noise=0.003, seed=round(10 * angle)), camera)
+    mean, _, known = sdf.query(np.random.default_rng(1).uniform(-0.52, 0.52, (400_000, 3)))
+    assert known.sum() > 1000 and np.abs(mean[known]).max() <= 0.010 * (1 + 1e-6)
+    assert mean[known].max() > 0.009 and mean[known].min() < -0.009  # voxels out to there are moved
+    sdf.save(tmp_path / "map.sdf")
+    assert mg.ProbabilisticSdf.load(tmp_path / "map.sdf").blocks == sdf.blocks
+
+
 def test_distances_have_a_margin_and_a_rule_for_the_unknown() -> None:
     sdf = mg.ProbabilisticSdf()
     sdf.integrate(frame([0, 0, 0.35]), CAMERA)

@@ -347,7 +347,7 @@ class PlaneFitter {
     const Vector3f n = to_plane ? normal : Vector3f(0, 0, -ray_length);
     for (int k = 0; k < 3; ++k) plane.n[k] = n[k];
     plane.c = n.dot(z * ray);
-    plane.reach = std::min(truncation * along, kCellReach * voxel + kNoiseReach * sigma * along);
+    plane.reach = std::min(truncation * std::min(1.0f, along), kCellReach * voxel + kNoiseReach * sigma * along);
     // However uncertain a depth is, its surface counts as lying within the truncation.
     const float white =
         std::min(sigma * sigma * doubt(i, z, plane.reach / along), truncation * truncation) * along * along;

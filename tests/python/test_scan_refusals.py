@@ -166,7 +166,8 @@ def test_a_spoiled_map_is_said_and_can_be_made_anew(
     spoil, message = SPOILED[what]
     spoil(tmp_path / "map")
     assert run(tmp_path / "frames", tmp_path / "map") == 2
-    assert message in capfd.readouterr().err
+    error = capfd.readouterr().err
+    assert message in error and error.endswith("make the map anew with --start-over, or choose another folder\n")
     assert run(tmp_path / "frames", tmp_path / "map", "--start-over") == 0
     assert contents(tmp_path / "map") == good
 

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from rich.console import Console
 
-from .._core import InvalidInput, OccupancyMap
+from .._core import InvalidInput, IoError, OccupancyMap
 from .._files import printable, write_file
 from ..frames import FrameFolder, open_frames
 from ..scan import (
@@ -78,7 +78,10 @@ def _begin(arguments: argparse.Namespace, frames: FrameFolder, folder: OutputFol
     if arguments.start_over or not path.exists():
         chosen = {name: getattr(arguments, name) for name in _OPTIONS}
         return Scan.begin(choose_options(frames, **{**chosen, "register": bool(arguments.register)}))
-    scan = read_scan(path)
+    try:
+        scan = read_scan(path)
+    except (InvalidInput, IoError) as error:
+        raise type(error)(f"{error}: make the map anew with --start-over, or choose another folder") from None
     for name, was in asdict(scan.options).items():
         now = getattr(arguments, name)
         if now is not None and now != was:

@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from .._argument_errors import checked
-from .._core import InvalidInput, IoError, ProbabilisticSdf, __version__
+from .._core import InvalidInput, ProbabilisticSdf, __version__
 from .._files import printable
 from ..documents.reading import Node, read_json
 from ..frames.intrinsics import Intrinsics
@@ -22,7 +22,6 @@ FORMAT, VERSION = "mmgrasp-scan", 1
 Row = TypeVar("Row", FrameRecord, SkippedFrame)
 LARGEST_MEMORY = 1e13  # [bytes], as the command's option
 _FATES = ("used", "out_of_range", "too_noisy", "too_slanted", "without_normal", "outliers")
-_AGAIN = "make the map anew with --start-over"
 
 
 @checked
@@ -46,11 +45,9 @@ def read_scan(path: Path) -> Scan:
     root = read_json(path).root
     if "format" not in root or root["format"].raw != FORMAT:
         found = repr(root["format"].raw)[:40] if "format" in root else "missing"
-        raise InvalidInput(
-            printable(f"{path}: format is {found}: is no progress of mmgrasp scan: {_AGAIN}, or choose another folder")
-        )
+        raise InvalidInput(printable(f"{path}: format is {found}: is no progress of mmgrasp scan"))
     if root["version"].integer() != VERSION:
-        root["version"].fail(f"this version of mmgrasp reads version {VERSION}: {_AGAIN}")
+        root["version"].fail(f"this version of mmgrasp reads version {VERSION}")
     root.mapping("format version mmgrasp map options sensors frames skipped")
     root["mmgrasp"].string()
     options = root["options"].mapping("voxel truncation max_memory", "outlier_gate register")
@@ -67,34 +64,25 @@ def read_scan(path: Path) -> Scan:
         root["map"].fail("must be a file in the same folder")
     scan = Scan(
         ScanOptions(**values),
-        _read_map(path.parent / name),
+        ProbabilisticSdf.load(path.parent / name),
         [_record(node, FrameRecord) for node in root["frames"].elements()],
         [_record(node, SkippedFrame) for node in root["skipped"].elements()],
         {sensor: _sensor(node) for sensor, node in root["sensors"].items()},
     )
     for record, node in zip(scan.frames, root["frames"].elements(), strict=True):
         if record.sensor not in scan.sensors:
-            node["sensor"].fail(f"is none of its sensors ({', '.join(scan.sensors)}): {_AGAIN}")
+            node["sensor"].fail(f"is none of its sensors ({', '.join(scan.sensors)})")
     _check_map(scan, path.parent / name, path)
     return scan
-
-
-def _read_map(path: Path) -> ProbabilisticSdf:
-    try:
-        return ProbabilisticSdf.load(path)
-    except IoError as error:
-        raise IoError(f"{error}: {_AGAIN}") from None
 
 
 def _check_map(scan: Scan, path: Path, progress: Path) -> None:
     sdf, options = scan.sdf, scan.options
     for key, there in (("voxel", sdf.voxel), ("truncation", sdf.truncation)):
         if there != getattr(options, key):
-            raise InvalidInput(
-                f"{path}: has {key} = {there:g}, {progress.name} says {getattr(options, key):g}: {_AGAIN}"
-            )
+            raise InvalidInput(f"{path}: has {key} = {there:g}, {progress.name} says {getattr(options, key):g}")
     if sdf.frames != len(scan.frames):
-        raise InvalidInput(f"{path}: holds {sdf.frames} frames, {progress.name} names {len(scan.frames)}: {_AGAIN}")
+        raise InvalidInput(f"{path}: holds {sdf.frames} frames, {progress.name} names {len(scan.frames)}")
 
 
 def _sensor(node: Node) -> dict[str, Any]:

@@ -22,12 +22,18 @@ struct UnitDirection {
   Eigen::Vector3d unit;
 };
 
-/// Standard deviation of the surface at a hit. Between cells that do not fit together, in front and behind, the map is
-/// not zero: how far it is from that counts, on the side that lies behind.
-double sigma_at(SdfSampler& sampler, const Eigen::Vector3d& hit, const Eigen::Vector3d& direction, double voxel) {
+/// Standard deviation of the surface at a hit. A hit on the border of what is known may lie beyond it by rounding: then
+/// it is that beside. Between cells that do not fit together, in front and behind, the map is not zero: how far it is
+/// from that counts, on the side that lies behind.
+double sigma_at(SdfSampler& sampler, const Eigen::Vector3d& hit, const Eigen::Vector3d& direction,
+                const SdfOptions& options) {
+  const Eigen::Vector3d step = 0.05 * options.voxel * direction;
   Sample sample = sampler.at(hit);
-  if (std::abs(sample.mean) > 0.01 * voxel) {
-    const Sample behind = sampler.at(hit + 0.05 * voxel * direction);
+  if (!sample.known) sample = sampler.at(hit + step);
+  if (!sample.known) sample = sampler.at(hit - step);
+  if (!sample.known) return options.truncation / 3;  // depths less certain are not used
+  if (std::abs(sample.mean) > 0.01 * options.voxel) {
+    const Sample behind = sampler.at(hit + step);
     if (behind.known && behind.mean <= 0) sample = behind;
     sample.variance += sample.mean * sample.mean;
   }
@@ -67,7 +73,7 @@ void cast_rays(const SdfGrid& grid, CrossingCells& crossing, const Eigen::Matrix
     out.distance[i] = t / direction.length;
     out.point.col(i) = point;
     out.normal.col(i) = normal.isZero(0) ? -direction.unit : normal;  // zero at the rim of what was seen
-    out.sigma[i] = sigma_at(sampler, point, direction.unit, grid.options.voxel);
+    out.sigma[i] = sigma_at(sampler, point, direction.unit, grid.options);
   }
 }
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 import pytest
@@ -50,7 +51,9 @@ def test_from_frames_to_answers(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("distance", ["to_plane", "along_ray"])
-def test_maps_of_wide_and_noisy_cameras_are_read_back(tmp_path: Path, distance: str) -> None:
+def test_maps_of_wide_and_noisy_cameras_are_read_back(
+    tmp_path: Path, distance: Literal["to_plane", "along_ray"]
+) -> None:
     """Pixels at the rim look 1.8 times as far as their depth; none moves a voxel by more than the truncation."""
     wide = mg.mapping.PinholeCamera(160, 120, 67, 67, 79.5, 59.5, 0.1, 3.0)
     ball = [mg.LinkShape(mg.Sphere(0.5))]

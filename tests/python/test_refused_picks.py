@@ -11,6 +11,8 @@ import pytest
 
 import mmgrasp as mg
 from conftest import edited
+from mmgrasp.part_supply.planning import ScenarioPlan
+from test_shared_headings import facing
 
 
 def hand_touches(scenario: dict[str, Any], write: Callable[..., Path]) -> dict[str, int]:
@@ -52,6 +54,22 @@ def test_remedies_are_those_that_work(small: dict[str, Any], write: Callable[...
     assert "approach_distance" not in first.message and "the bin" not in first.message
     solved = {change: plans(under, write, change) for change in ("lift_height", "approach_distance")}
     assert solved == {"lift_height": True, "approach_distance": False}
+
+
+def test_a_tray_s_roof_is_told_from_its_walls(write: Callable[..., Path]) -> None:
+    """A block in a tray below a roof of its own, which can be grasped and not lifted: each of both, alone, helps."""
+    values = facing(1.8)
+    tray = values["trays"][0] | {"targets": [0], "parts": [{"type": "block", "xyz": [0, 0]}]}
+
+    def planned(**body: object) -> ScenarioPlan:
+        return mg.plan_part_supply(mg.load_scenario(write(values | {"trays": [tray | {"roof": 0.25} | body]})))
+
+    plan = planned()
+    assert plan.outcome == mg.Outcome.not_found
+    message = plan.obstructions[0].message
+    assert "lower the walls of 'tray east'" in message and "raise the roof of 'tray east'" in message
+    assert planned(roof=0.7).outcome == mg.Outcome.solved
+    assert planned(walls=dict.fromkeys(("front", "back", "left", "right"), 0)).outcome == mg.Outcome.solved
 
 
 def plans(scenario: dict[str, Any], write: Callable[..., Path], short: str) -> bool:

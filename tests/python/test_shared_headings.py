@@ -50,3 +50,20 @@ def test_trays_that_face_each_other_share_a_stop(apart: float, write: Callable[.
         tray["headings"] = [0.0] if tray["name"] == "east" else [math.pi]
     listed = mg.plan_part_supply(mg.load_scenario(write(values)))
     assert len(listed.stops) == 2 and not listed.premises["shared_headings"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("other", [math.pi, 3.1416, -3.1419, 3 * math.pi, 3.1436])
+def test_headings_that_differ_by_rounding_are_one(other: float, write: Callable[..., Path], tmp_path: Path) -> None:
+    """Two trays side by side that list the same heading; 2 mrad apart they are two."""
+    values = facing(1.8)
+    west = values["trays"][1] | {"size": [0.2, 0.2, 0.08], "targets": [0], "parts": [{"type": "block", "xyz": [0, 0]}]}
+    first, second = copy.deepcopy(west), copy.deepcopy(west)
+    first |= {"name": "first", "headings": [3.14159]}
+    second |= {"name": "second", "headings": [other]}
+    second["pose"]["xyz"][1] += 0.3
+    file = write(values | {"trays": [first, second]})
+    plan = mg.plan_part_supply(mg.load_scenario(file))
+    assert len(plan.stops) == (2 if other == 3.1436 else 1)
+    verdict = mg.verify_plan(plan.save(tmp_path / "plan.json"), scenario=file)
+    assert verdict.ok, verdict.faults

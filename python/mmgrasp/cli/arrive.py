@@ -28,7 +28,9 @@ def run_arrive(arguments: argparse.Namespace, console: Console) -> int:
         report("reading", 0.0)
         stops = len(read_plan(arguments.plan)["stops"])
         if arguments.stop > stops:
-            raise InvalidInput(f"--stop {arguments.stop}: {arguments.plan} has {stops} stops")
+            raise InvalidInput(
+                f"--stop {arguments.stop}: must be at most {stops}, the number of stops in {arguments.plan}"
+            )
         found = arrive(
             arguments.plan,
             arguments.stop - 1,

@@ -10,8 +10,9 @@ namespace mmgrasp::detail {
 /// The tray's headings without repetitions; the facing one when it lists none.
 std::vector<double> tray_headings(const Tray& tray);
 
-/// Headings closer than this are one, as for verify [rad].
-constexpr double kSameHeading = 1e-6;
+/// Headings closer than this are one, as for verify: people round them (3.1416), and the hand of an arm of 1 m moves by
+/// no more than 1 mm [rad].
+constexpr double kSameHeading = 1e-3;
 
 /// Adds a heading unless the list has it, up to full turns and kSameHeading.
 void add_heading(std::vector<double>& headings, double heading);

@@ -109,13 +109,15 @@ std::string move_advice(const Obstruction& o) {
 
 /// The open hand is blocked at every grasp.
 std::string hand_advice(const PartSupplyProblem& problem, PartRef ref, int too_wide) {
-  std::string text = "the open hand touches " + hand_obstacles(problem, ref) +
-                     ": give grasps from above, lower the tray's walls, leave more room between the parts, or hold "
+  const std::string hand = problem.gripper.suction ? "the hand touches " : "the open hand touches ";
+  std::string text = hand + hand_obstacles(problem, ref) +
+                     ": give grasps from above, give the tray lower walls or a higher roof, leave more room between "
+                     "the parts, or hold "
                      "them higher above what they stand on";
+  if (problem.gripper.suction) return text;
   if (problem.trays[ref.tray].parts[ref.part].grasps_sampled)
     text += " (a standoff in grasp_options holds parts with the tips of the pads: up to " +
             metres(problem.gripper.finger_depth / 2) + ")";
-  if (problem.gripper.suction) return text;
   text += " (gripper opens to " + metres(problem.gripper.max_opening);
   return text + (too_wide > 0 ? ", " + std::to_string(too_wide) + " grasps were too wide)" : ")");
 }

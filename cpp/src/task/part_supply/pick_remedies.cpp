@@ -49,11 +49,41 @@ std::vector<std::string> near_objects(const PickProblem& pick, const std::set<st
   return names;
 }
 
+/// The shapes of a body that lie wholly above a point, as a tray's roof does above its parts, or the others.
+WorldObject part_of_body(const WorldObject& body, const Eigen::Vector3d& point, bool above) {
+  const Eigen::Vector3d local = body.T_world_object.inverse(Eigen::Isometry) * point;
+  WorldObject part{{}, body.T_world_object};
+  for (const LinkShape& shape : body.shapes) {
+    const bool lies_above = shape_bounds(shape.shape, shape.T_link_shape).min().z() >= local.z();
+    if (lies_above == above) part.shapes.push_back(shape);
+  }
+  return part;
+}
+
+/// Its walls and its roof, each left out by itself.
+void try_without_parts_of_tray(const PickProblem& pick, const std::string& tray, std::vector<Remedy>& tries) {
+  const WorldObject& body = pick.world.objects().at(tray);
+  const Eigen::Vector3d middle = pick.world.objects().at(pick.object).T_world_object.translation();
+  const WorldObject roof = part_of_body(body, middle, true), rest = part_of_body(body, middle, false);
+  tries.push_back({"lower the walls of '" + tray + "'", pick});
+  tries.back().pick.world.remove(tray);
+  if (roof.shapes.empty()) return;
+  tries.back().pick.world.add(tray, roof);
+  if (rest.shapes.empty()) return;
+  tries.push_back({"raise the roof of '" + tray + "'", pick});
+  tries.back().pick.world.remove(tray);
+  tries.back().pick.world.add(tray, rest);
+}
+
 std::vector<Remedy> remedies_to_try(const PickProblem& pick, const std::set<std::string>& parts,
                                     const std::string& own_tray, double reach) {
   std::vector<Remedy> tries;
   for (const std::string& name : near_objects(pick, parts, reach)) {
-    tries.push_back({name == own_tray ? "lower the walls of '" + name + "'" : "move '" + name + "' away", pick});
+    if (name == own_tray) {
+      try_without_parts_of_tray(pick, name, tries);
+      continue;
+    }
+    tries.push_back({"move '" + name + "' away", pick});
     tries.back().pick.world.remove(name);
   }
   tries.push_back({"leave more room between the parts", pick});

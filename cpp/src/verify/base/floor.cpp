@@ -6,10 +6,15 @@
 namespace mmgrasp::verify::detail {
 
 int Floor::layer(double heading) const {
+  int nearest = -1;
+  double least = kSameHeading;
   for (std::size_t i = 0; i < grid_.headings.size(); ++i) {
-    if (std::abs(wrap_angle(heading - grid_.headings[i])) <= 1e-6) return static_cast<int>(i);
+    const double apart = std::abs(wrap_angle(heading - grid_.headings[i]));
+    if (apart >= least) continue;
+    least = apart;
+    nearest = static_cast<int>(i);
   }
-  return -1;
+  return nearest;
 }
 
 bool Floor::inside(int region, int layer, int ix, int iy) const {

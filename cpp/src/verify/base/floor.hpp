@@ -6,6 +6,8 @@
 
 namespace mmgrasp::verify::detail {
 
+constexpr double kSameHeading = 1e-3;  ///< Headings closer than this are one [rad].
+
 /// The regions of a plan as flags over one grid, read through exact distances.
 class Floor {
  public:
@@ -14,7 +16,7 @@ class Floor {
 
   const CheckedGrid& grid() const { return grid_; }
   int regions() const { return static_cast<int>(regions_.size()); }
-  /// Layer with this heading (modulo a full turn, to 1e-6 rad); -1: none.
+  /// Layer nearest to this heading (modulo a full turn), closer than kSameHeading; -1: none.
   int layer(double heading) const;
   /// Distance from a point in the region to the nearest place that is not in it; for a point outside, minus the
   /// distance to the region. Not checked beyond `cap`.

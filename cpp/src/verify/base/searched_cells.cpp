@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "verify/base/floor.hpp"
+
 namespace mmgrasp::verify::detail {
 namespace {
 
@@ -11,7 +13,7 @@ constexpr double kBeyond = 0.02;  // Corners of a cell are looked at so much of 
 
 bool lists(const CheckedTray& tray, double heading) {
   return std::any_of(tray.headings.begin(), tray.headings.end(),
-                     [&](double known) { return std::abs(wrap_angle(known - heading)) <= 1e-6; });
+                     [&](double known) { return std::abs(wrap_angle(known - heading)) < kSameHeading; });
 }
 
 }  // namespace

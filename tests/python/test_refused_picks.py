@@ -72,6 +72,24 @@ def test_a_tray_s_roof_is_told_from_its_walls(write: Callable[..., Path]) -> Non
     assert planned(walls=dict.fromkeys(("front", "back", "left", "right"), 0)).outcome == mg.Outcome.solved
 
 
+def test_what_the_hand_touches_is_named_where_a_move_helps_too(write: Callable[..., Path]) -> None:
+    """One grasp from above, and a bar hangs where the palm must be; tray and table could be moved from under it."""
+    values = facing(1.8)
+    x, y, z = values["trays"][0]["pose"]["xyz"]
+    down = {"pose": {"xyz": [0, 0, 0], "quat_xyzw": [0, 0.70710678, 0, 0.70710678]}, "opening": 0.04}
+    values["part_types"]["block"]["grasps"] = [down]
+    tray = values["trays"][0] | {"size": [0.2, 0.2, 0.08], "targets": [0], "parts": [{"type": "block", "xyz": [0, 0]}]}
+    table = {"name": "table", "box": [0.5, 0.5, 0.02], "pose": {"xyz": [x, y, z - 0.011]}}
+    bar = {"name": "bar", "box": [0.02, 0.3, 0.02], "pose": {"xyz": [x, y, z + 0.194]}}
+    plan = mg.plan_part_supply(mg.load_scenario(write(values | {"trays": [tray], "obstacles": [table, bar]})))
+    assert plan.outcome != mg.Outcome.solved
+    first = plan.obstructions[0]
+    assert "the open hand touches 'bar' (1 of 1 grasps): move the tray" in first.message
+    assert "'tray east'" not in first.message  # it is moved with its body
+    freed = mg.plan_part_supply(mg.load_scenario(write(values | {"trays": [tray], "obstacles": [table]})))
+    assert freed.outcome == mg.Outcome.solved
+
+
 def plans(scenario: dict[str, Any], write: Callable[..., Path], short: str) -> bool:
     """Whether all is picked with a straight move of 2 cm."""
     options = {**scenario.get("options", {}), short: 0.02}

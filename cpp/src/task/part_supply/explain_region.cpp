@@ -98,7 +98,10 @@ std::string listed(const std::vector<std::string>& names, std::size_t first) {
 }
 
 std::string move_advice(const Obstruction& o) {
-  std::vector<std::string> others = o.move_objects;
+  std::vector<std::string> others;
+  for (const std::string& name : o.move_objects) {
+    if (name != "tray " + o.move_trays.front()) others.push_back(name);  // its body
+  }
   others.insert(others.end(), o.move_trays.begin() + 1, o.move_trays.end());
   std::ostringstream text;
   text.precision(4);
@@ -107,10 +110,13 @@ std::string move_advice(const Obstruction& o) {
   return text.str();
 }
 
+std::string hand_touches(const PartSupplyProblem& problem, PartRef ref) {
+  return (problem.gripper.suction ? "the hand touches " : "the open hand touches ") + hand_obstacles(problem, ref);
+}
+
 /// The open hand is blocked at every grasp.
 std::string hand_advice(const PartSupplyProblem& problem, PartRef ref, int too_wide) {
-  const std::string hand = problem.gripper.suction ? "the hand touches " : "the open hand touches ";
-  std::string text = hand + hand_obstacles(problem, ref) +
+  std::string text = hand_touches(problem, ref) +
                      ": give grasps from above, give the tray lower walls or a higher roof, leave more room between "
                      "the parts, or hold "
                      "them higher above what they stand on";
@@ -126,7 +132,8 @@ std::string advice(const PartExplanation& part, const Obstruction& o, std::size_
                    const PartSupplyProblem& problem, PartRef ref, int too_wide) {
   const Rejections& r = part.rejections;
   const std::size_t collisions = r.scene + r.self_collision;
-  if (!o.move_trays.empty()) return move_advice(o);
+  const bool hand_blocked = r.grasp_filter > 0 && r.grasp_filter == r.total();
+  if (!o.move_trays.empty()) return (hand_blocked ? hand_touches(problem, ref) + ": " : "") + move_advice(o);
   if (o.reach_deficit > 0) {
     return "the nearest base pose at which the robot may stand falls " + metres(o.reach_deficit) +
            " short and no move of the tray alone was found that helps: lower obstacles under it or clear more floor";
@@ -141,7 +148,7 @@ std::string advice(const PartExplanation& part, const Obstruction& o, std::size_
            " base poses around it: clear the floor in front of the tray, widen the workspace or choose another home "
            "configuration";
   }
-  if (r.grasp_filter == r.total()) return hand_advice(problem, ref, too_wide);
+  if (hand_blocked) return hand_advice(problem, ref, too_wide);
   if (r.unreachable + r.limits >= collisions) {
     return "bring the part nearer to where the robot can stand, allow other base headings, or give grasps from other "
            "directions";

@@ -82,7 +82,6 @@ def count(least: int, most: int, unit: str) -> Number:
 threads = count(0, 1024, "threads")
 seed = count(0, 2**31 - 1, "")
 
-
 length = Number(0, 1, "m")
 voxel = Number(1e-4, 10, "m")
 sigmas = Number(0, 100, "")

@@ -307,7 +307,7 @@ void bind_synthesis(py::module_& m) {
       "eigengrasp_hand",
       [](const Robot& robot, const std::string& tool_link,
          const std::vector<std::pair<std::string, std::vector<std::string>>>& groups, const ArrayLike& open,
-         const ArrayLike& closed, const ArrayLike& approach, const std::string& name) {
+         const ArrayLike& closed, const ArrayLike& approach, const std::string& name, double clearance) {
         std::vector<EigengraspGroup> made;
         Eigen::Index count = 0;
         for (const auto& [group, joints] : groups) {
@@ -316,15 +316,32 @@ void bind_synthesis(py::module_& m) {
         }
         return eigengrasp_hand(robot, tool_link, made,
                                {name, vector_argument(open, "open", count), vector_argument(closed, "closed", count)},
-                               vector3_argument(approach, "approach"));
+                               vector3_argument(approach, "approach"), clearance);
       },
       "robot"_a, "tool_link"_a, "groups"_a, py::kw_only(), "open"_a, "closed"_a, "approach"_a = py::make_tuple(0, 0, 1),
-      "name"_a = "type",
+      "name"_a = "type", "clearance"_a = 0.01,
       "A robot hand set up for one type of grasp (P3 4.6.1, Algorithm 3): `groups` are (name, joints) pairs, `open` "
       "and "
-      "`closed`\nthe values of all their joints in that order. Groups whose values agree keep them. Raises "
+      "`closed`\nthe values of all their joints in that order. Groups whose values agree keep them. "
+      "`clearance` "
+      "is kept free on each side of a part while\nmoving in [m]; the links of the pads are its finger links. Raises "
       "InvalidInput on "
       "unknown joints,\nvalues outside limits, and when no two fingertips close on each other.");
+  m.def(
+      "_closing_line",
+      [](const Hand& hand, const Robot& robot) {
+        const auto model = make_hand_model(hand, robot);
+        const std::vector<FingerPad> pads = model->pads(std::vector<double>(model->groups(), 0.5));
+        const ClosingLine line = closing_line(pads);
+        double slant = 0;
+        for (const FingerPad& pad : pads)
+          slant = std::max(slant, std::acos(std::min(1.0, std::abs(pad.T_hand_pad.linear().col(2).dot(line.axis)))));
+        return std::pair{line.middle, slant};
+      },
+      "hand"_a, "robot"_a,
+      "Where the pads of a hand of many joints, half open, would meet, in its tool frame (3,) [m], and the steepest "
+      "angle "
+      "of a\npad's push to the line on which they close [rad].");
   m.def("_synthesis_option_table", [] { return option_table(synthesis_fields()); });
   m.def("_synthesis_option_bounds", [] { return synthesis_options().bounds(); });
   bind_success(m);

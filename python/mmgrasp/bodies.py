@@ -84,7 +84,7 @@ class SceneBodies:
         lowest = [
             LinkShape(s.shape, part.pose @ s.pose).bounds[0][2] for part in self.parts.values() for s in part.shapes
         ]
-        self.floor: float = min([0.0, *lowest]) if floor is None else floor
+        self.floor = float(min([0.0, *lowest])) if floor is None else floor
 
     @classmethod
     def of_world(cls, robot: Robot, world: World, parts: Iterable[Placed] = ()) -> SceneBodies:

@@ -211,14 +211,3 @@ def test_a_ball_is_held_from_all_around(
                 for key in ("joints", "pretouch_joints")
             )
             assert abs(closed) < 0.004 and open_ > 0.001, (tip, closed, open_)
-
-
-def test_rounds_refuse_such_a_hand(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    scenario = (ASSETS / "scenarios" / "storeroom.yaml").read_text()
-    begin, end = scenario.index("\ngripper:"), scenario.index("\nplace_region:")
-    changed = tmp_path / "scenario.yaml"
-    changed.write_text(
-        scenario[:begin] + "\ngripper:\n  approach: [1, 0, 0]\n  groups: {}\n  types: {}\n" + scenario[end:]
-    )
-    assert main(["plan", str(changed), "-o", str(tmp_path / "out")]) == 2
-    assert "`mmgrasp grasp` seeks grasps for it" in " ".join(capsys.readouterr().err.split())

@@ -48,7 +48,7 @@ def test_the_model_has_every_joint_shape_and_mass() -> None:
     actuated = [e.attrib["name"] for e in root.findall("actuator/*")]
     assert built.joints == [name for name in actuated if not name.startswith("base/")]
     assert sorted(built.joints) == sorted(robot().joints)
-    assert built.fingers == [j.name for j in gripper().joints]
+    assert list(built.fingers) == [j.name for j in gripper().joints]
     shapes = sum(len(robot().collisions(link)) for link in robot().links)
     assert len(root.findall("worldbody//geom")) == shapes + 3 == len(built.owner)  # floor, table, box
     urdf = ET.fromstring(robot().to_urdf())

@@ -7054,6 +7054,11 @@ def _check_options(section: str, **kwargs: typing.Any) -> None:
     """
 def _checker_option_table() -> dict[str, typing.Any]:
     ...
+def _closing_line(hand: Hand, robot: Robot) -> tuple[numpy.typing.NDArray[numpy.float64], float]:
+    """
+    Where the pads of a hand of many joints, half open, would meet, in its tool frame (3,) [m], and the steepest angle of a
+    pad's push to the line on which they close [rad].
+    """
 def _cuboid_option_table() -> dict[str, typing.Any]:
     ...
 def _drive_by_option_table() -> dict[str, typing.Any]:
@@ -7267,10 +7272,11 @@ def drive_by_program(group: JointGroup, *, start: numpy.typing.ArrayLike, tasks:
     The nonlinear problem from which plan_drive_by begins, with its guess, obstacles left out; None when a task is out of reach.
     `smoothing` weighs the mean square of accelerations over their limits [s].
     """
-def eigengrasp_hand(robot: Robot, tool_link: str, groups: collections.abc.Sequence[tuple[str, collections.abc.Sequence[str]]], *, open: numpy.typing.ArrayLike, closed: numpy.typing.ArrayLike, approach: numpy.typing.ArrayLike = (0, 0, 1), name: str = 'type') -> Hand:
+def eigengrasp_hand(robot: Robot, tool_link: str, groups: collections.abc.Sequence[tuple[str, collections.abc.Sequence[str]]], *, open: numpy.typing.ArrayLike, closed: numpy.typing.ArrayLike, approach: numpy.typing.ArrayLike = (0, 0, 1), name: str = 'type', clearance: float = 0.01) -> Hand:
     """
     A robot hand set up for one type of grasp (P3 4.6.1, Algorithm 3): `groups` are (name, joints) pairs, `open` and `closed`
-    the values of all their joints in that order. Groups whose values agree keep them. Raises InvalidInput on unknown joints,
+    the values of all their joints in that order. Groups whose values agree keep them. `clearance` is kept free on each side of a part while
+    moving in [m]; the links of the pads are its finger links. Raises InvalidInput on unknown joints,
     values outside limits, and when no two fingertips close on each other.
     """
 def evaluate_graspability(map: HeightMap, gripper: Hand, *, image: DepthImage | None = None, margin: float = 0.001, orientations: int = 16, openings: int = 2, layer_step: float = 0.01, lowest: float = 0.003, insertion: float = 0.01, smoothing: float = 0.01, min_contact: float = 0.4, min_distance: float = 0.015, max_grasps: int = 100, threads: int = 0) -> Graspability:

@@ -16,7 +16,7 @@ from .._argument_errors import checked
 from .._core import FingerGrip, GripperActuator, HoldingRequirement, InvalidInput, KeepOff, Mesh
 from .._files import ASSETS, shipped
 from ..documents.reading import Node, near_miss, read_yaml
-from ..scenario.robot_section import find_file
+from ..scenario.named_files import find_file
 from .part_mesh import load_part_mesh
 from .part_size import LARGEST_PART, UNITS, wrong_size
 from .turned_parts import SIDES, block, meeting_edges, turned

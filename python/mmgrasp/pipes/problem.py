@@ -27,7 +27,8 @@ from .._files import ASSETS, shipped
 from .._progress import Progress
 from ..documents.reading import Node, near_miss, read_yaml
 from ..scenario.contact_rules import read_contact_rules
-from ..scenario.robot_section import find_file, read_arm
+from ..scenario.named_files import find_file
+from ..scenario.robot_section import read_arm
 from ..scenario.shapes import read_shapes
 from .path_section import read_path
 from .preferences import Limits, Preferences, read_limits, read_preferences

@@ -8,7 +8,7 @@ from .._core import Box, Error, LinkShape, OccupancyMap, pose, read_pcd
 from ..documents.ply_points import read_ply_points
 from ..documents.reading import Node
 from .map_bodies import merged
-from .robot_section import find_file
+from .named_files import find_file
 
 MOST_BOXES = 20_000
 _TOLERANCE = 1e-6  # of an edge, by which a cell may stick out of `within`

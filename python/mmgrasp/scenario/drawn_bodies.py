@@ -9,7 +9,7 @@ import numpy as np
 from .._core import Box, Cylinder, Error, LinkShape, Robot, pose
 from ..documents.moveit_scene import read_scene_bodies
 from ..documents.reading import Node
-from .robot_section import find_file
+from .named_files import find_file
 
 MOST_WALLS = 20_000
 

@@ -10,7 +10,7 @@ import numpy as np
 from .._core import Box, Error, LinkShape, pose
 from .._files import read_bytes
 from ..documents.reading import Node, read_yaml
-from .robot_section import find_file
+from .named_files import find_file
 
 LARGEST_IMAGE = 100_000_000  # [bytes]
 MOST_CELLS = 25_000_000

@@ -8,7 +8,9 @@ from typing import Any
 import numpy as np
 
 from .._core import Hand, HandJoint, InvalidInput, Mesh, Robot
-from ..documents.reading import Node
+from ..documents.reading import Node, read_yaml
+from .grasp_types import CLEARANCE, read_hand_of_type
+from .named_files import find_file, profile_path
 from .robot_names import check_link, joint_value
 from .suction_section import read_cups
 
@@ -24,9 +26,12 @@ def read_hand(node: Node, robot: Robot, tool_link: str) -> Hand:
     if "from_robot" in node:
         return _gripper_from_robot(node, robot, tool_link, payload)
     if "groups" in node:
-        node["groups"].fail(
-            "a hand of several groups of joints: `mmgrasp grasp` seeks grasps for it, all else needs two fingers"
-        )
+        node.mapping("approach groups types", "type clearance closing_speed payload")
+        return _hand_of_type(node, node, robot, tool_link, "").with_payload(payload)
+    if "name" in node:
+        node.mapping("name", "type prefix clearance closing_speed payload")
+        prefix = node["prefix"].string() if "prefix" in node else ""
+        return _hand_of_type(node, _profile_of(node["name"]), robot, tool_link, prefix).with_payload(payload)
     node.mapping(
         "approach closing max_opening finger_depth finger_width joints finger_links", "clearance closing_speed payload"
     )
@@ -64,6 +69,30 @@ def read_hand(node: Node, robot: Robot, tool_link: str) -> Hand:
     return hand
 
 
+def _hand_of_type(node: Node, profile: Node, robot: Robot, tool_link: str, prefix: str) -> Hand:
+    """A hand of many joints in one of its types of grasp; `profile` has the types."""
+    return read_hand_of_type(
+        profile,
+        node["type"] if "type" in node else None,
+        robot,
+        tool_link,
+        read_axes(profile)["approach"],
+        prefix,
+        node["clearance"].number(least=0) if "clearance" in node else CLEARANCE,
+    )
+
+
+def _profile_of(name: Node) -> Node:
+    """The section `gripper` of a profile that names types of grasp."""
+    text = name.string()
+    with name.blamed():
+        path = find_file(name) if text.endswith((".yaml", ".yml")) else profile_path(text, ("grippers", "robots"))
+    section = read_yaml(path).root["gripper"]
+    if "types" not in section:
+        name.fail("has no types of grasp: must be the profile of a hand of many joints")
+    return section
+
+
 def check_finger_travel(section: Node, robot: Robot, hand: Hand) -> None:
     """Both fingers meet a part at once: all move, and those that slide go half of the opening along `closing`, apart as they open."""
     if "joints" not in section:
@@ -75,7 +104,7 @@ def check_finger_travel(section: Node, robot: Robot, hand: Hand) -> None:
         closed, opened = (np.linalg.inv(poses[hand.tool_link]) @ poses[link] for poses in ends)
         if np.allclose(opened, closed, atol=1e-9):
             node.fail(f"must move every finger: the finger link {link} stands still")
-        places[link] = float(hand.closing @ (closed @ _middle(robot, link))[:3])
+        places[link] = float(hand.closing @ (closed @ middle_of(robot, link))[:3])
         moved = (opened - closed)[:3, 3]
         if np.linalg.norm(moved) > 1e-9 and np.allclose(opened[:3, :3], closed[:3, :3], atol=1e-9):
             ways[link] = hand.closing @ moved
@@ -93,7 +122,7 @@ def check_finger_travel(section: Node, robot: Robot, hand: Hand) -> None:
         node.fail(f"{inner} and {outer} come nearer to each other as they open: are closed and open swapped?")
 
 
-def _middle(robot: Robot, link: str) -> np.ndarray:
+def middle_of(robot: Robot, link: str) -> np.ndarray:
     """Mean place of a link's shapes in its frame, homogeneous; its origin where it has none [m]."""
     places = [
         shape.pose @ np.append(shape.shape.vertices.mean(axis=0) if isinstance(shape.shape, Mesh) else np.zeros(3), 1.0)

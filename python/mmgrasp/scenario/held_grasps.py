@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from .. import _core
-from .._core import Grasp, Hand, JointGroup, LinkShape
+from .._core import Grasp, Hand, JointGroup, LinkShape, Robot
 
 CLOSING_PLAY = "10 mm or a quarter of it, whichever is more"
 """How far below a part's width fingers may close to meet it: verify::narrowest_grip() in words."""
@@ -17,6 +17,7 @@ class ClosingHand:
 
     arm: JointGroup
     hand: Hand
+    robot: Robot
     mesh_tolerance: float = 0.0
     """Its meshes may stick out so far beyond those by which `verify` judges [m]."""
 

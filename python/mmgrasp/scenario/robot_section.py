@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import importlib.util
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,18 +12,18 @@ from .._argument_errors import checked
 from .._core import (
     Box,
     Hand,
-    InvalidInput,
     JointGroup,
     LinkShape,
     PlaceRegion,
     Robot,
 )
-from .._files import ASSETS, shipped
+from .._files import shipped
 from .._progress import Progress
 from ..documents.reading import RENAMED, Node, near_miss, read_yaml
 from .closed_fingers import fingers_may_meet, held_links_may_meet
 from .grasp_types import HandTypes, opened, read_grasp_types
 from .gripper_section import check_finger_travel, read_axes, read_hand
+from .named_files import find_file, profile_path
 from .robot_names import check_link, joint_value
 from .shapes import read_shapes
 from .wheels import limits_of_wheels
@@ -66,50 +64,6 @@ class RobotSections:
     gripper: Node
     place_region: Node | None
     """None: a profile of an arm alone."""
-
-
-def find_file(node: Node) -> Path:
-    """A path relative to its file, `asset:...` in the shipped assets, or `robot-data:...` in example-robot-data."""
-    text = node.string()
-    if text.startswith("asset:"):
-        path = shipped(text)
-    elif text.startswith("robot-data:"):
-        path = robot_data_folder(node) / text.removeprefix("robot-data:")
-    else:
-        try:
-            path = Path(node.document.source).parent / Path(text).expanduser()
-        except RuntimeError:
-            node.fail("no such file: the user's home folder is not known")
-    try:
-        found = path.exists()
-    except (OSError, ValueError):  # too long, or no name at all
-        found = False
-    if not found:
-        node.fail(f"no such file ({path})")
-    return path
-
-
-def robot_data_folder(node: Node) -> Path:
-    """Where the optional package example-robot-data keeps its robots."""
-    spec = importlib.util.find_spec("cmeel")
-    for folder in [Path(p) for p in (spec.submodule_search_locations or [])] if spec else []:
-        data = folder.parent / "cmeel.prefix" / "share" / "example-robot-data"
-        if data.is_dir():
-            return data
-    node.fail("needs the robots of example-robot-data: pip install 'mmgrasp[robots]'")
-
-
-def profile_path(name: str, folders: tuple[str, ...] = ("robots",)) -> Path:
-    """A robot profile by name (one shipped in these folders of the assets) or by path."""
-    path = Path(name)
-    if path.suffix in (".yaml", ".yml"):
-        return path
-    shipped_ones = [p for folder in folders for p in (ASSETS / folder).glob("*/*.yaml") if p.stem == p.parent.name]
-    known = {p.stem: p for p in sorted(shipped_ones)}
-    if name not in known:
-        what = "robot" if folders == ("robots",) else "robot or gripper"
-        raise InvalidInput(f"{what} name = {name!r}: no such {what}{near_miss(name, list(known))}")
-    return known[name]
 
 
 def choose_sections(root: Node, robot_name: str | None) -> RobotSections:
@@ -212,7 +166,7 @@ def read_setup(sections: RobotSections, progress: Progress = None) -> RobotSetup
     closed = gripper.joint_values(0.0)
     group = _read_group(robot, node["group"], tool_link)
     arm = _arm_of(robot, node["group"], group)
-    _check_joint_owners(sections, arm)
+    _check_joint_owners(sections, arm, gripper)
     robot = held_links_may_meet(robot, arm, gripper, other)
     arm = robot.group(**group).with_reference({**other, **closed})
     home = _read_home(node["home"], arm)
@@ -386,14 +340,15 @@ def _read_place_region(node: Node, T_root_bin: np.ndarray) -> PlaceRegion:
         return PlaceRegion(T_root_bin, size[:2], **options)
 
 
-def _check_joint_owners(sections: RobotSections, arm: JointGroup) -> None:
+def _check_joint_owners(sections: RobotSections, arm: JointGroup, gripper: Hand) -> None:
     """A joint is moved by the arm or by the gripper, or keeps the value of the section `joints`."""
     owners = dict.fromkeys(arm.names, "the arm")
-    for joint in sections.gripper["joints"].elements() if "joints" in sections.gripper else []:
-        name = joint["name"].string()
-        if name in owners:
-            joint["name"].fail(f"is a joint of {owners[name]}")
-        owners[name] = "the gripper"
+    listed = sections.gripper["joints"].elements() if "joints" in sections.gripper else []
+    for k, joint in enumerate(gripper.joints):
+        if joint.name in owners:
+            node = listed[k]["name"] if listed else sections.gripper
+            node.fail(f"{joint.name} is a joint of {owners[joint.name]}")
+        owners[joint.name] = "the gripper"
     for name, value in _named_numbers(sections.robot, "joints"):
         if name in owners:
             value.fail(f"{name} is a joint of {owners[name]}, which moves it")

@@ -23,8 +23,9 @@ from . import cell_bodies, drawn_bodies, floor_map
 from .contact_rules import ContactRules, read_contact_rules
 from .grid_size import check_grid_size
 from .held_grasps import ClosingHand
+from .named_files import find_file
 from .part_type import PartType
-from .robot_section import RobotSetup, choose_sections, find_file, read_setup
+from .robot_section import RobotSetup, choose_sections, read_setup
 from .scan_section import ScanReader, moved
 from .schema import with_article
 from .shapes import read_shapes
@@ -183,7 +184,7 @@ def _read_scenario(
     if setup.robot.base == "fixed":
         root["robot"].fail("a part-supply round needs base: diff_drive or omni")
     _check_metres(root, obstacles, setup.robot.base_limits["workspace"])
-    closing = ClosingHand(setup.arm, setup.gripper, setup.mesh_tolerance)
+    closing = ClosingHand(setup.arm, setup.gripper, setup.robot, setup.mesh_tolerance)
     types = read_part_types(root["part_types"], closing, progress) if "part_types" in root else {}
     scans = ScanReader(closing, _in_world(obstacles), find_file, progress)
     trays = _read_trays(root, types, setup, scans)

@@ -15,8 +15,8 @@ from .._progress import Progress
 from ..documents.reading import Node, near_miss
 from .cup_grasps import read_cup_grasps
 from .held_grasps import CLOSING_PLAY, ClosingHand
+from .named_files import find_file
 from .part_type import PartType, read_grasp_options
-from .robot_section import find_file
 from .scan_section import ScanReader, TrayScan, moved
 from .shapes import read_shapes
 from .tray_body import BODY_KEYS, STEEPEST, WALL, TrayBody, read_tray_body, tilt

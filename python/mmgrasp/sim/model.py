@@ -31,6 +31,7 @@ from .._core import (
     World,
 )
 from ..bodies import SceneBodies
+from .finger_drives import FingerDrive, finger_drives
 from .rolling import BASE_JOINTS, CASTER_RADIUS, ROOT_JOINT, TYRES, RollingBase
 
 ROBOT, SCENE, PART, FLOOR, WHEEL = 1, 2, 4, 8, 16
@@ -72,7 +73,8 @@ class Physics:
     """Numbers of the model that no robot file holds."""
 
     time_step: float = 0.002
-    """[s]"""
+    """[s]. A held part creeps outwards where the hand swings, with its centripetal acceleration times a step [m/s] (MuJoCo's constraints
+    leave that acceleration out): take 0.0005 for hands that swing faster than 2 m/s."""
     gravity: tuple[float, float, float] = (0.0, 0.0, -9.81)
     """[m/s^2]"""
     finger_friction: float = 0.9
@@ -80,7 +82,7 @@ class Physics:
     scene_friction: float = 0.3
     """Coefficient of scene and floor; parts may have more of their own."""
     grip_force: float = 40.0
-    """Largest force of each finger joint [N]."""
+    """Largest force at a fingertip [N]."""
     base_force: float = 300.0
     """Largest force of the wheels on the base [N]."""
     base_torque: float = 100.0
@@ -122,7 +124,8 @@ class Built:
     xml: str
     joints: list[str] = field(default_factory=list)
     """Driven joints of the robot, one actuator each, in this order; then the three of the base, or its two wheels, if it moves."""
-    fingers: list[str] = field(default_factory=list)
+    fingers: dict[str, FingerDrive] = field(default_factory=dict)
+    """Joints of the hand."""
     owner: dict[str, str] = field(default_factory=dict)
     """Link, part or scene object of each geom by its name."""
     floor: float = 0.0
@@ -164,7 +167,12 @@ class _Builder:
         ET.SubElement(option, "flag", multiccd="enable")
         default = ET.SubElement(self.root, "default")
         ET.SubElement(
-            default, "geom", solref="0.006 1", condim="4", density="500", solimp=_text((*physics.impedance, 0.001))
+            default,
+            "geom",
+            solref=_text((3 * physics.time_step, 1)),
+            condim="4",
+            density="500",
+            solimp=_text((*physics.impedance, 0.001)),
         )
         self.asset = ET.SubElement(self.root, "asset")
         world = ET.SubElement(self.root, "worldbody")
@@ -172,7 +180,7 @@ class _Builder:
             world, "floor", FLOOR, physics.scene_friction, type="plane", size="20 20 1", pos=f"0 0 {bodies.floor!r}"
         )
         finger_links = set(gripper.finger_links) if gripper else set()
-        self.fingers = [j.name for j in gripper.joints] if gripper else []
+        self.fingers = finger_drives(self.robot, gripper) if gripper else {}
         self.coupled = _coupling(gripper) if gripper else {}
         for obstacle in bodies.obstacles:
             element = ET.SubElement(world, "body", {"name": f"scene/{obstacle.name}", **_placed(obstacle.pose)})
@@ -260,8 +268,8 @@ class _Builder:
             return
         force = float(limit.get("effort", "0")) if limit is not None else 0.0
         if name in self.fingers:
-            force = self.physics.grip_force
-            self.built.fingers.append(name)
+            force = self.fingers[name].limit(self.physics.grip_force)
+            self.built.fingers[name] = self.fingers[name]
         rolls = self.physics.rolling is not None and name in (self.physics.rolling.left, self.physics.rolling.right)
         actuator = ET.SubElement(actuators, "velocity" if rolls else "position", name=name, joint=name, kv="1")
         if force > 0 and np.isfinite(force):
@@ -333,11 +341,14 @@ def _attribute(element: ET.Element, name: str) -> str:
 
 
 def _coupling(hand: Hand) -> dict[str, tuple[str, str]]:
-    """Joints of a group open together, as one drive moves them: each as a linear function of the group's first."""
+    """Joints of a group open together, as one drive moves them: each as a linear function of the group's first that moves."""
     lines = {}
     firsts: dict[str, HandJoint] = {}
     for joint in hand.joints:
-        first = firsts.setdefault(joint.group, joint)
+        if joint.open != joint.closed:
+            firsts.setdefault(joint.group, joint)
+    for joint in hand.joints:
+        first = firsts.get(joint.group, joint)
         if joint is not first:
             ratio = (joint.open - joint.closed) / (first.open - first.closed)
             lines[joint.name] = (first.name, _text((joint.closed - ratio * first.closed, ratio, 0, 0, 0)))

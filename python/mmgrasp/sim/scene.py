@@ -173,7 +173,8 @@ class SimScene:
         w = self.physics.stiffness
         for name, index in self.actuator.items():
             inertia = self.inertia(name)
-            stiff = self.physics.grip_force / GIVE if name in self.built.fingers else inertia * w * w
+            drive = self.built.fingers.get(name)
+            stiff = drive.stiffness(self.physics.grip_force / GIVE) if drive else inertia * w * w
             self.gains(index, stiff, 2 * np.sqrt(stiff * inertia))
         if self.base is not None:
             self.base.tune()

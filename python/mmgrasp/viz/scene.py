@@ -46,8 +46,9 @@ class PlanScene:
         scenario = self.plan["scenario"]
         values = dict(scenario["other_joints"])
         gripper = scenario["gripper"]
+        openings = gripper.get("openings", [0.0, gripper["max_opening"]])  # at equal steps of the joints
+        share = float(np.interp(state.opening, openings, np.linspace(0, 1, len(openings))))
         for finger in gripper["joints"]:
-            share = state.opening / gripper["max_opening"]  # a hand of cups has no fingers
             values[finger["name"]] = finger["closed"] + share * (finger["open"] - finger["closed"])
         values.update(zip(scenario["arm"]["joints"], map(float, state.arm), strict=True))
         return values

@@ -35,11 +35,13 @@ MMGRASP_EXPORT Eigen::MatrixXd eigengrasp_matrix(const std::vector<int>& sizes, 
 
 /// A robot hand set up for one type of grasp. alpha is 1 minus the shares of Hand and HandModel, since a posture there
 /// is 0 closed and 1 open. Groups that take no part are held by Hand::preshape. Its axes, openings and pads come from
-/// forward kinematics. Throws InvalidInput on unknown joints, postures of another size, a tool link or approach that is
-/// none, and when fewer than two fingertips, or none against another, are moved.
+/// forward kinematics; the links of the pads are its finger links. `clearance` as Hand's [m]. Throws InvalidInput on
+/// unknown joints, postures of another size, a tool link or approach that is none, and when fewer than two fingertips,
+/// or none against another, are moved.
 MMGRASP_EXPORT Hand eigengrasp_hand(const Robot& robot, const std::string& tool_link,
                                     const std::vector<EigengraspGroup>& groups, const GraspType& type,
-                                    const Eigen::Vector3d& approach = Eigen::Vector3d::UnitZ());
+                                    const Eigen::Vector3d& approach = Eigen::Vector3d::UnitZ(),
+                                    double clearance = 0.01);
 
 /// Pads and bodies of a hand with many joints, by the robot's forward kinematics; keeps what it needs of the robot. A
 /// pad is the inner face of a fingertip, the last link with shapes of a finger that the closing groups move: it faces

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "mmgrasp/core/export.hpp"
@@ -33,6 +34,8 @@ class MMGRASP_EXPORT HandModel {
   virtual int groups() const = 0;
   /// Closing group of each pad.
   virtual std::vector<int> group_of_pad() const = 0;
+  /// Link of each pad; empty for hands without a robot that do not name theirs.
+  virtual std::vector<std::string> link_of_pad() const = 0;
   /// Pads of at least two fingers; the first pushes along its side of the closing line, others along or against it.
   virtual std::vector<FingerPad> pads(const std::vector<double>& shares) const = 0;
   /// Boxes around all bodies of the hand.

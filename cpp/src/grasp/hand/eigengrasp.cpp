@@ -37,7 +37,7 @@ Eigen::MatrixXd eigengrasp_matrix(const std::vector<int>& sizes, const Eigen::Ve
 }
 
 Hand eigengrasp_hand(const Robot& robot, const std::string& tool_link, const std::vector<EigengraspGroup>& groups,
-                     const GraspType& type, const Vector3d& approach) {
+                     const GraspType& type, const Vector3d& approach, double clearance) {
   require(std::abs(approach.norm() - 1) <= 1e-6, "approach", approach.norm(), "must be a unit vector");
   std::vector<int> sizes;
   for (const EigengraspGroup& group : groups) sizes.push_back(static_cast<int>(group.joints.size()));
@@ -46,6 +46,7 @@ Hand eigengrasp_hand(const Robot& robot, const std::string& tool_link, const std
   hand.tool_link = tool_link;
   hand.kind = ClosingKind::adaptive;
   hand.approach = approach;
+  hand.clearance = clearance;
   hand.closing = approach.unitOrthogonal();
   int row = 0;
   for (std::size_t g = 0; g < groups.size(); ++g) {
@@ -78,6 +79,7 @@ Hand eigengrasp_hand(const Robot& robot, const std::string& tool_link, const std
   const std::vector<FingerPad> pads = model->pads(std::vector<double>(model->groups(), 0.5));
   hand.finger_depth = pads[0].depth;
   hand.finger_width = pads[0].width;
+  hand.finger_links = model->link_of_pad();
   hand.check_fingers();
   return hand;
 }

@@ -17,6 +17,9 @@ class NumberedHand final : public HandModel {
   const Hand& hand() const override { return hand_; }
   int groups() const override { return 1; }
   std::vector<int> group_of_pad() const override { return {0, 0}; }
+  std::vector<std::string> link_of_pad() const override {
+    return hand_.finger_links.size() == 2 ? hand_.finger_links : std::vector<std::string>{};
+  }
 
   std::vector<FingerPad> pads(const std::vector<double>& shares) const override {
     std::vector<FingerPad> pads;

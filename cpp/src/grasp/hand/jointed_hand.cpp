@@ -36,6 +36,11 @@ class JointedHand final : public HandModel {
   const Hand& hand() const override { return hand_; }
   int groups() const override { return static_cast<int>(closing_.size()); }
   std::vector<int> group_of_pad() const override { return pad_group_; }
+  std::vector<std::string> link_of_pad() const override {
+    std::vector<std::string> names;
+    for (const int link : pad_link_) names.push_back(robot_.links()[link].name);
+    return names;
+  }
   bool parallel() const override { return false; }
 
   std::vector<FingerPad> pads(const std::vector<double>& shares) const override {

@@ -80,7 +80,7 @@ def test_too_far_away_is_explained(plan: ScenarioPlan) -> None:
 
 def test_bad_input(plan: ScenarioPlan) -> None:
     pose = plan.stops[0].pose
-    with pytest.raises(mg.InvalidInput, match=r"stop = 7: .*the plan has 1 stops"):
+    with pytest.raises(mg.InvalidInput, match=r"stop = 7: .*the plan has 1 stop$"):
         arrive(plan, 7, pose)
     with pytest.raises(mg.InvalidInput, match="pose"):
         arrive(plan, 0, [0, 0])

@@ -42,7 +42,7 @@ CHEAP = {
         soft_finger_torque wheel_speeds make_base_grid pairwise_weights
         """,
     "one configuration, one pose, one time, one place or one body": """
-        verify.pads_unlike_grasp verify.broken_seal seal_gap _centre_of_mass
+        verify.pads_unlike_grasp verify.broken_seal seal_gap _centre_of_mass _closing_line
         CapabilityMap.configuration CapabilityMap.index_at CollisionChecker.contacts CollisionChecker.distance
         CollisionChecker.distances CollisionChecker.first_contact CollisionChecker.is_free CollisionChecker.rejection
         IkObjective.evaluate IkSeedDatabase.add IkSeedDatabase.seeds JointGroup.at JointGroup.fk JointGroup.force_manipulability

@@ -94,3 +94,18 @@ def plans(scenario: dict[str, Any], write: Callable[..., Path], short: str) -> b
     """Whether all is picked with a straight move of 2 cm."""
     options = {**scenario.get("options", {}), short: 0.02}
     return mg.plan_part_supply(write(edited(scenario, "options", options))).outcome == mg.Outcome.solved
+
+
+def test_a_tray_too_high_is_lowered(small: dict[str, Any], write: Callable[..., Path]) -> None:
+    """As far as is said, to a centimetre: then some grasp's height is reached, whatever else is in the way."""
+    x, y, _ = small["trays"][0]["pose"]["xyz"]
+
+    def words(z: float) -> str:
+        plan = mg.plan_part_supply(write(edited(small, "trays.0.pose", small["trays"][0]["pose"] | {"xyz": [x, y, z]})))
+        assert plan.outcome != mg.Outcome.solved
+        return plan.obstructions[0].message
+
+    said = re.search(r"lie ([\d.]+) m above all that the arm reaches, wherever the base stands: lower the tray", words(2.8))
+    assert said
+    assert "above all that the arm reaches" in words(2.81 - float(said[1]))
+    assert "above all that the arm reaches" not in words(2.79 - float(said[1]))

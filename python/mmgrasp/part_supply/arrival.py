@@ -19,7 +19,7 @@ from .._argument_errors import checked
 from .._core import InvalidInput, Outcome
 from .._files import write_files
 from .._progress import Progress
-from ..documents.reading import read_json
+from ..documents.reading import near_miss, read_json
 from ..scenario import Scenario, load_scenario
 from .chosen_parts import chosen_as
 from .plan_file import check_form
@@ -135,12 +135,12 @@ def arrive(
     if not stops:
         raise InvalidInput(f"plan = {_name(plan)}: holds no stops")
     if not 0 <= stop < len(stops):
-        raise InvalidInput(f"stop = {stop}: must be an index from 0, the plan has {len(stops)} stops")
+        raise InvalidInput(f"stop = {stop}: must be an index from 0, the plan has {len(stops)} stop{'s' * (len(stops) > 1)}")
     index = {part.name: (t, p) for t, tray in enumerate(loaded.trays) for p, part in enumerate(tray.tray.parts)}
     gone = {part for at, part in picks if at < stop}
     for name in picked:
         if name not in index:
-            raise InvalidInput(f"picked = {name!r}: is no part of the scenario")
+            raise InvalidInput(f"picked = {name!r}: is no part of {loaded.source}{near_miss(name, list(index))}")
         gone.add(name)
     planned, radius, trays = stops[stop]
     measured = np.asarray(pose, float)

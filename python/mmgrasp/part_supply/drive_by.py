@@ -13,7 +13,7 @@ import json
 import os
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Unpack
+from typing import Any, NoReturn, Unpack
 
 import numpy as np
 
@@ -23,6 +23,7 @@ from .._core import InvalidInput, Outcome, Pick
 from .._files import write_files
 from .._options import DriveByOptions
 from .._progress import Progress
+from ..documents.reading import read_yaml
 from ..scenario import Scenario
 from .known_motion import KnownPick
 from .planning import ScenarioPlan, file_name
@@ -195,17 +196,21 @@ class DriveByPlan:
 def check_in_passing(scenario: Scenario) -> None:
     """Raises InvalidInput for a round of which no part can be taken in passing."""
     if scenario.setup.gripper.suction is not None:
-        raise InvalidInput(
-            f"{scenario.source}: drive-by: needs a hand with fingers, which close in passing; this one has suction cups"
-        )
+        _refuse(scenario, "gripper suction", "drive-by needs a hand with fingers, which close in passing")
     if scenario.setup.place_region.capacity:
-        raise InvalidInput(
-            f"{scenario.source}: drive-by: parts are not taken in passing with a place_region.capacity, of several trips"
-        )
+        _refuse(scenario, "place_region capacity", "drive-by takes no parts of several trips in passing: leave it out")
     if scenario.drive_clearance:
-        raise InvalidInput(
-            f"{scenario.source}: drive-by: motions in passing do not keep drive_clearance: leave it out for them"
-        )
+        _refuse(scenario, "drive_clearance", "motions of a drive-by do not keep it: leave it out for them")
+
+
+def _refuse(scenario: Scenario, keys: str, rule: str) -> NoReturn:
+    """Raises InvalidInput at the line of these keys, as far as the scenario's own file has them."""
+    node = read_yaml(scenario.source).root
+    for key in keys.split():
+        if key not in node:
+            raise InvalidInput(f"{scenario.source}: {'.'.join(keys.split())}: {rule}")
+        node = node[key]
+    node.fail(rule)
 
 
 @checked

@@ -143,4 +143,17 @@ double BasePoseEvaluator::reach_deficit(const Eigen::Vector3d& base_pose, PartRe
   return std::isfinite(nearest) ? std::max(nearest, 0.0) : 0.0;
 }
 
+double BasePoseEvaluator::height_deficit(PartRef ref) const {
+  const Part& part = part_of(impl_->problem(), ref);
+  const Eigen::AlignedBox3d bounds = impl_->database->bounds();
+  double nearest = detail::kInfinity;
+  for (int g = 0; g < static_cast<int>(part.grasps.size()); ++g) {
+    if (hand_blocked(ref, g)) continue;
+    const double z = (part.T_world_part * part.grasps[g].T_object_hand).translation().z();
+    const double outside = z - std::clamp(z, bounds.min().z(), bounds.max().z());
+    if (std::abs(outside) < std::abs(nearest)) nearest = outside;
+  }
+  return std::isfinite(nearest) ? nearest : 0.0;
+}
+
 }  // namespace mmgrasp

@@ -129,11 +129,15 @@ std::string hand_advice(const PartSupplyProblem& problem, PartRef ref, int too_w
 }
 
 std::string advice(const PartExplanation& part, const Obstruction& o, std::size_t in_collision,
-                   const PartSupplyProblem& problem, PartRef ref, int too_wide) {
+                   const PartSupplyProblem& problem, PartRef ref, int too_wide, double height) {
   const Rejections& r = part.rejections;
   const std::size_t collisions = r.scene + r.self_collision;
   const bool hand_blocked = r.grasp_filter > 0 && r.grasp_filter == r.total();
   if (!o.move_trays.empty()) return (hand_blocked ? hand_touches(problem, ref) + ": " : "") + move_advice(o);
+  if (height != 0) {
+    return "its grasps lie " + metres(std::abs(height)) + (height > 0 ? " above" : " below") +
+           " all that the arm reaches, wherever the base stands: " + (height > 0 ? "lower" : "raise") + " the tray";
+  }
   if (o.reach_deficit > 0) {
     return "the nearest base pose at which the robot may stand falls " + metres(o.reach_deficit) +
            " short and no move of the tray alone was found that helps: lower obstacles under it or clear more floor";
@@ -245,8 +249,8 @@ Obstruction explain_region(const PartSupplyProblem& problem, const ReachDatabase
   obstruction.stage = all_blocked ? "grasp" : "region";
   if (!all_blocked) obstruction.reach_deficit = reach_deficit(problem, database, evaluator, grid, {tray, index});
   add_advised_move(obstruction, problem, database, grid, tray, earlier);
-  const std::string fix =
-      advice(explanation, obstruction, region.base_poses_in_collision, problem, {tray, index}, part.grasps_too_wide);
+  const std::string fix = advice(explanation, obstruction, region.base_poses_in_collision, problem, {tray, index},
+                                 part.grasps_too_wide, evaluator.height_deficit({tray, index}));
   if (explanation.base_poses_tried == 0) {
     obstruction.message = "part '" + part.name + "': no base pose could be tried: " + fix;
   } else if (explanation.base_poses_feasible > 0) {

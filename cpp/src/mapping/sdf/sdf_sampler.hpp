@@ -103,10 +103,11 @@ class SdfSampler {
   /// Means at the corners of a cell that are all known, its lowest corner the voxel with these indices; corner k lies
   /// beyond it along x, y, z by the bits of k.
   void corners(int x, int y, int z, float* mean) {
-    CellValues means, weights;
     around_cell_.enter({x >> 3, y >> 3, z >> 3});
-    if (near_surface({x, y, z}, means, weights) == Corners::near) {
-      for (int k = 0; k < 8; ++k) mean[k] = means[k];
+    kept_cell_ = {x, y, z};
+    kept_corners_ = near_surface(kept_cell_, kept_mean_, kept_weight_);
+    if (kept_corners_ == Corners::near) {
+      for (int k = 0; k < 8; ++k) mean[k] = kept_mean_[k];
       return;
     }
     Node corner[8];
@@ -130,7 +131,14 @@ class SdfSampler {
     const int block = around_cell_.index(0);
     const std::array<float, 3> correlation = block >= 0 ? grid_.correlation[block] : std::array<float, 3>{1, 1, 1};
     CellValues mean, weight;
-    switch (near_surface({cell[0], cell[1], cell[2]}, mean, weight)) {
+    Corners corners = Corners::near;
+    if (kept_corners_ == Corners::near && std::equal(cell, cell + 3, kept_cell_.begin())) {
+      mean = kept_mean_;
+      weight = kept_weight_;
+    } else {
+      corners = near_surface({cell[0], cell[1], cell[2]}, mean, weight);
+    }
+    switch (corners) {
       case Corners::unknown:
         return {};
       case Corners::near: {
@@ -372,6 +380,10 @@ class SdfSampler {
   const float voxel_;
   bool systematic_ = false;  ///< Some camera has a systematic error.
   BlockNeighbours around_cell_, around_stencil_;
+  // The cell that corners() was asked for last: where a ray ends in it, at() is next.
+  std::array<int, 3> kept_cell_{};
+  Corners kept_corners_ = Corners::unknown;
+  CellValues kept_mean_, kept_weight_;
   BlockKey last_key_;
   int last_ = -1;
   bool last_valid_ = false;

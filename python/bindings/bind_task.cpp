@@ -291,7 +291,7 @@ void bind_picks(py::module_& m) {
       },
       py::arg("arm"), py::arg("hand"), py::arg("part"), py::arg("grasps"), py::kw_only(),
       py::arg("mesh_tolerance") = 0.0,
-      "Tells of each grasp of a part whether two of the hand's finger links meet the part at once, closing from the\n"
+      "Tells of each grasp of a part whether finger links of both sides meet the part at once, closing from the\n"
       "grasp's opening by at most 10 mm or a quarter of it, whichever is more, wherever within 0.2 mm along the\n"
       "closing axis the hand stands: a plan's own check asks for that. Fingers that leave a gap when they are closed\n"
       "cannot hold what is thinner. `arm`, whose tip carries the hand, says how all other joints stand; its robot's\n"

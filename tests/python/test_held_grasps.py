@@ -44,7 +44,7 @@ def test_parts_thinner_than_the_gap_of_closed_fingers_are_refused_at_their_line(
     thin = with_brackets(tmp_path, f"cylinder: {{radius: {0.475 * gap:.6f}, length: 0.2}}")
     with pytest.raises(
         mg.InvalidInput,
-        match=r"scenario.yaml:63: part_types.bracket.*has no grasp.*two finger links.*thinner than the gap",
+        match=r"scenario.yaml:63: part_types.bracket.*has no grasp.*from both sides.*thinner than the gap",
     ):
         mg.load_scenario(thin)
     width = round(gap + 5e-4, 6)
@@ -86,7 +86,7 @@ def test_listed_grasps_are_refused_at_their_entry(tmp_path: Path) -> None:
 @pytest.mark.parametrize("beyond", [0.0, 1e-8, 1e-6, 1e-5, 1e-4])
 def test_parts_as_thin_as_the_gap_are_refused(tmp_path: Path, beyond: float) -> None:
     radius = (gap_of_closed_fingers() + beyond) / 2
-    with pytest.raises(mg.InvalidInput, match=r"has no grasp.*two finger links"):
+    with pytest.raises(mg.InvalidInput, match=r"has no grasp.*from both sides"):
         mg.load_scenario(with_brackets(tmp_path, f"cylinder: {{radius: {radius!r}, length: 0.2}}"))
 
 

@@ -277,21 +277,32 @@ bool Judge::link_comes_near(int link, const PlacedBody& body, double margin) con
   return false;
 }
 
-int Judge::fingers_touching_attached(const Eigen::VectorXd& arm, double opening) {
+void Judge::find_sides(const Eigen::VectorXd& arm) {
+  place(arm, stage_->setup.openings.back());
+  const Pose T_tip_world = tip(arm).inverse(Eigen::Isometry);
+  std::map<int, double> along;
+  for (const int link : solid_links_) {
+    if (stage_->is_finger[link])
+      along[link] = stage_->setup.closing.dot(T_tip_world * Eigen::Vector3d(link_bounds_[link].center()));
+  }
+  const auto less = [](const auto& a, const auto& b) { return a.second < b.second; };
+  const auto [low, high] = std::minmax_element(along.begin(), along.end(), less);
+  for (const auto& [link, at] : along) side_[link] = at > (low->second + high->second) / 2;
+}
+
+int Judge::sides_touching_attached(const Eigen::VectorXd& arm, double opening) {
   mmgrasp::detail::throw_if_interrupted();
+  if (side_.empty()) find_sides(arm);
   place(arm, opening);
   if (attached_ < 0) return 0;
-  int touching = 0;
-  for (const int link : solid_links_) {
-    if (!stage_->is_finger[link]) continue;
-    for (std::size_t i = 0; i < attached_body_.solids.size(); ++i) {
-      if (!link_touches(link, attached_body_.solids[i], attached_body_.T_world_shape[i], attached_body_.bounds[i]))
-        continue;
-      ++touching;
-      break;
+  bool touched[2] = {false, false};
+  for (const auto& [link, side] : side_) {
+    for (std::size_t i = 0; i < attached_body_.solids.size() && !touched[side]; ++i) {
+      touched[side] =
+          link_touches(link, attached_body_.solids[i], attached_body_.T_world_shape[i], attached_body_.bounds[i]);
     }
   }
-  return touching;
+  return touched[0] + touched[1];
 }
 
 }  // namespace mmgrasp::verify::detail

@@ -78,14 +78,16 @@ class Judge {
   Touch touch(const Eigen::VectorXd& arm, double opening);
   /// What the robot's links touch or come closer to than `margin` [m]: bodies of the scene, the ground left out.
   Touch comes_near(const Eigen::VectorXd& arm, double opening, double margin);
-  /// How many finger links touch the attached body.
-  int fingers_touching_attached(const Eigen::VectorXd& arm, double opening);
+  /// From how many sides, 0 to 2, finger links touch the attached body: either side of the middle between the outermost
+  /// of them, along the closing axis of the open hand.
+  int sides_touching_attached(const Eigen::VectorXd& arm, double opening);
   Pose tip(const Eigen::VectorXd& arm) { return T_world_root_ * kinematics_.tip(arm); }
   std::size_t queries() const { return queries_; }
 
  private:
   void place(const Eigen::VectorXd& arm, double opening);
   void find_near_bodies();
+  void find_sides(const Eigen::VectorXd& arm);
   Touch self_touch() const;
   Touch scene_touch() const;
   Touch attached_touch() const;
@@ -97,6 +99,7 @@ class Judge {
   Pose T_world_root_ = Pose::Identity();
   std::vector<bool> present_;
   std::vector<std::size_t> near_;   ///< Bodies within the robot's reach of the base.
+  std::map<int, bool> side_;        ///< Of each finger link; found when first asked for.
   std::vector<Poses> solid_poses_;  ///< [link][solid], world.
   std::vector<std::vector<Bounds>> solid_bounds_;
   std::vector<Bounds> link_bounds_;

@@ -120,6 +120,7 @@ void Structure::gripper(ArmSetup& setup, std::vector<int>& finger_links) {
   setup.openings = rising && !openings.empty() ? openings : std::vector<double>{0.0, plan.max_opening};
   need(std::abs(plan.closing.norm() - 1) < 1e-6 && std::abs(plan.closing.dot(plan.approach)) < 1e-6, "closing",
        "must be a unit vector orthogonal to approach");
+  setup.closing = plan.closing;
   need(finite(plan.finger_depth) && plan.finger_depth >= 0 && finite(plan.finger_width) && plan.finger_width >= 0,
        "finger_depth, finger_width", "must not be negative");
   need(finite(plan.approach_distance) && plan.approach_distance >= 0, "approach_distance", "must not be negative");

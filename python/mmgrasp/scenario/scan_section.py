@@ -222,7 +222,7 @@ class ScanReader:
             reasons[name] = found.summary()
         elif rated and not grasps:
             reasons[name] = (
-                f"in none of {rated} grasps do two finger links meet it, closing as far as they may ({CLOSING_PLAY})"
+                f"in none of {rated} grasps do fingers meet it from both sides, closing as far as they may ({CLOSING_PLAY})"
             )
         elif not grasps:
             reasons[name] = f"in all {len(found.grasps)} grasps the pads would meet an edge"

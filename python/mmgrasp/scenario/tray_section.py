@@ -186,7 +186,7 @@ def _check_fingers_meet(listed: Listed, name: str, shapes: list[LinkShape], clos
     for (entry, _), meets in zip(listed, meet, strict=True):
         if not meets:
             entry.fail(
-                f"does not hold part type {name}: fewer than two finger links of the gripper meet it, closing from its "
+                f"does not hold part type {name}: fingers do not meet it from both sides, closing from its "
                 f"opening as far as they may ({CLOSING_PLAY})"
             )
 
@@ -431,7 +431,7 @@ def _check_graspable(name: str, kind: PartType, grasps: list[Grasp], gripper: Ha
     _refuse_at_option(name, kind)
     if kind.not_met:
         kind.node.fail(
-            f"part {name} has no grasp: in none of {kind.not_met} do two finger links of the gripper meet it, closing from its "
+            f"part {name} has no grasp: in none of {kind.not_met} do fingers meet it from both sides, closing from its "
             f"width as far as they may ({CLOSING_PLAY}): it is thinner than the gap that they leave, or their faces stand too far back"
         )
     if kind.too_wide:

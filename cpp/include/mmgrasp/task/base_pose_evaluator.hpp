@@ -56,8 +56,8 @@ class MMGRASP_EXPORT BasePoseEvaluator {
   bool hand_blocked(PartRef part, int grasp) const;
   /// How far the tool at its nearest usable grasp lies beyond the arm's reach from a base pose [m]; 0: within reach.
   double reach_deficit(const Eigen::Vector3d& base_pose, PartRef part) const;
-  /// How far the nearest in height of a part's grasps lies above (> 0) or below (< 0) all that the arm reaches, wherever
-  /// the base stands [m].
+  /// How far the nearest in height of a part's grasps lies above (> 0) or below (< 0) all sampled postures of the arm,
+  /// wherever the base stands [m].
   double height_deficit(PartRef part) const;
 
  private:

@@ -12,7 +12,7 @@ namespace mmgrasp {
 /// How far off a grasp an arm may stand that reaches it within the tolerances of a plan's own check [m].
 constexpr double kGraspSlack = 2e-4;
 
-/// Tells of each grasp of a part whether two of the hand's finger links meet the part at once while they close from the
+/// Tells of each grasp of a part whether finger links of both sides meet the part at once while they close from the
 /// grasp's opening down to verify::narrowest_grip(), wherever within kGraspSlack along the closing axis the hand
 /// stands: a plan's own check asks for that. Fingers that leave a gap when they are closed cannot hold what is thinner.
 /// The arm, whose tip carries the hand, says how all other joints stand; meshes of its robot may stick out by

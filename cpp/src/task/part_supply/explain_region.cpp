@@ -23,6 +23,7 @@ std::string metres(double value) {
 }
 
 constexpr double kAdviceStep = 1e-5;  // Advised lengths are whole steps [m], so that texts and fields tell the same.
+constexpr double kHeightPlay = 0.02;  // Arm postures are samples: so much higher there may be others [m].
 constexpr double kDiscMargin = 2e-6;  // An advised disc is smaller than the largest one by this much at least [m].
 
 /// A multiple of kAdviceStep with all its digits.
@@ -134,9 +135,10 @@ std::string advice(const PartExplanation& part, const Obstruction& o, std::size_
   const std::size_t collisions = r.scene + r.self_collision;
   const bool hand_blocked = r.grasp_filter > 0 && r.grasp_filter == r.total();
   if (!o.move_trays.empty()) return (hand_blocked ? hand_touches(problem, ref) + ": " : "") + move_advice(o);
-  if (height != 0) {
+  if (std::abs(height) > kHeightPlay) {
     return "its grasps lie " + metres(std::abs(height)) + (height > 0 ? " above" : " below") +
-           " all that the arm reaches, wherever the base stands: " + (height > 0 ? "lower" : "raise") + " the tray";
+           " all that was found in the arm's reach, wherever the base stands: " + (height > 0 ? "lower" : "raise") +
+           " the tray";
   }
   if (o.reach_deficit > 0) {
     return "the nearest base pose at which the robot may stand falls " + metres(o.reach_deficit) +

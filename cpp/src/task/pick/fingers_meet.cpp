@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <map>
-#include <set>
 #include <string>
 
 #include "mmgrasp/collision/checker.hpp"
 #include "mmgrasp/core/detail/interruption.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/verify/plan_check.hpp"
@@ -27,7 +27,9 @@ class ClosingHand {
         arm_(arm.at(Pose::Identity())),
         q_(0.5 * (arm_.sample_lower() + arm_.sample_upper())),
         T_tool_root_(arm_.fk(q_).inverse()),
-        checker_(arm_, world_of(part), only_scene()) {}
+        checker_(arm_, world_of(part), only_scene()) {
+    find_sides();
+  }
 
   bool meets(const Grasp& grasp, double slack) {
     const auto meets_at = [&](double beside) {
@@ -43,7 +45,7 @@ class ClosingHand {
     for (int i = 0; i <= kSteps; ++i) {  // The farther they are closed, the more fingers meet, for most parts.
       CollisionChecker& checker = at_opening(narrowest + (opening - narrowest) * i / kSteps);
       checker.set_root(T_world_root);
-      if (fingers_touching(checker) >= 2) return true;
+      if (both_sides_touch(checker)) return true;
     }
     return false;
   }
@@ -64,12 +66,33 @@ class ClosingHand {
     const JointGroup opened = detail::arm_with_opening(arm_, hand_, opening);
     return kept_.emplace(opening, checker_.with_group(opened)).first->second;
   }
-  std::size_t fingers_touching(CollisionChecker& checker) {
-    std::set<std::string> touching;
-    for (const Contact& contact : checker.contacts(q_)) {
-      if (std::count(hand_.finger_links.begin(), hand_.finger_links.end(), contact.a) > 0) touching.insert(contact.a);
+  /// Finger links on either side of the middle between the outermost ones, along the closing axis of the open hand.
+  void find_sides() {
+    const Robot& robot = arm_.robot();
+    Poses poses;
+    const JointGroup opened = detail::arm_with_opening(arm_, hand_, hand_.max_opening);
+    opened.link_poses(q_, poses);
+    const Pose T_tool_world = poses[arm_.tip_link()].inverse(Eigen::Isometry);
+    std::map<std::string, double> place;
+    double low = detail::kInfinity, high = -detail::kInfinity;
+    for (const std::string& finger : hand_.finger_links) {
+      const int link = robot.link_index(finger);
+      Eigen::AlignedBox3d bounds;
+      for (const LinkShape& shape : robot.links()[link].collisions)
+        bounds.extend(shape_bounds(shape.shape, T_tool_world * poses[link] * shape.T_link_shape));
+      const double at = bounds.isEmpty() ? 0 : hand_.closing.dot(bounds.center());
+      place[finger] = at;
+      low = std::min(low, at);
+      high = std::max(high, at);
     }
-    return touching.size();
+    for (const auto& [finger, at] : place) side_[finger] = at > (low + high) / 2;
+  }
+  bool both_sides_touch(CollisionChecker& checker) const {
+    bool touched[2] = {false, false};
+    for (const Contact& contact : checker.contacts(q_)) {
+      if (const auto found = side_.find(contact.a); found != side_.end()) touched[found->second] = true;
+    }
+    return touched[0] && touched[1];
   }
 
   const Hand& hand_;
@@ -77,6 +100,7 @@ class ClosingHand {
   Eigen::VectorXd q_;
   Pose T_tool_root_;
   CollisionChecker checker_;
+  std::map<std::string, bool> side_;  ///< Of each finger link.
   std::map<double, CollisionChecker> kept_;  ///< Openings of the fingers [m] and checkers of them.
 };
 

@@ -41,12 +41,12 @@ void HandCheck::check_grip(const Eigen::VectorXd& arm, double width, const std::
   const double below = width - narrowest_grip(width);
   int most = 0;
   for (int i = 0; i <= kSteps && most < 2; ++i) {
-    most = std::max(most, judge_.fingers_touching_attached(arm, width - below * i / kSteps));
+    most = std::max(most, judge_.sides_touching_attached(arm, width - below * i / kSteps));
   }
   if (most >= 2) return;
   faults_.push_back({"grasp-empty", where,
                      "closing from " + text(width) + " m to " + text(width - below) + " m, " +
-                         (most == 0 ? "no finger touches the part" : "only one finger link touches the part")});
+                         (most == 0 ? "no finger touches the part" : "fingers of only one side touch the part")});
 }
 
 }  // namespace mmgrasp::verify::detail

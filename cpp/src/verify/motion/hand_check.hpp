@@ -15,7 +15,7 @@ class HandCheck {
   bool collides(const Eigen::VectorXd& arm, double opening, const std::string& where);
   /// Fingers moving with the arm at rest.
   void check_fingers(const Eigen::VectorXd& arm, double from, double to, const std::string& where);
-  /// "grasp-empty": two fingers must meet the attached part at once, at the grasp's width or somewhat below it:
+  /// "grasp-empty": fingers of both sides must meet the attached part at once, at the grasp's width or somewhat below:
   /// collision shapes may stand back a little from the pads that the width is meant for. Otherwise nothing is held.
   void check_grip(const Eigen::VectorXd& arm, double width, const std::string& where);
 

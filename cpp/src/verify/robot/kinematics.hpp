@@ -22,6 +22,7 @@ struct ArmSetup {
   int tip_link = -1;
   std::map<int, double> others;  ///< Joint index -> value held.
   std::vector<FingerMap> fingers;
+  Eigen::Vector3d closing = Eigen::Vector3d::UnitY();  ///< Unit axis in the tip frame along which the pads close.
   /// Openings at equal steps of the finger joints from closed to open; at least two [m].
   std::vector<double> openings = {0.0, 0.1};
 

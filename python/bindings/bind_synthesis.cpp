@@ -329,19 +329,20 @@ void bind_synthesis(py::module_& m) {
       "unknown joints,\nvalues outside limits, and when no two fingertips close on each other.");
   m.def(
       "_closing_line",
-      [](const Hand& hand, const Robot& robot) {
+      [](const Hand& hand, const Robot& robot, double share) {
+        require(share >= 0 && share <= 1, "share", share, "must be in [0, 1]");
         const auto model = make_hand_model(hand, robot);
-        const std::vector<FingerPad> pads = model->pads(std::vector<double>(model->groups(), 0.5));
+        const std::vector<FingerPad> pads = model->pads(std::vector<double>(model->groups(), share));
         const ClosingLine line = closing_line(pads);
         double slant = 0;
         for (const FingerPad& pad : pads)
           slant = std::max(slant, std::acos(std::min(1.0, std::abs(pad.T_hand_pad.linear().col(2).dot(line.axis)))));
-        return std::pair{line.middle, slant};
+        return std::tuple{line.middle, line.opening, slant};
       },
-      "hand"_a, "robot"_a,
-      "Where the pads of a hand of many joints, half open, would meet, in its tool frame (3,) [m], and the steepest "
-      "angle "
-      "of a\npad's push to the line on which they close [rad].");
+      "hand"_a, "robot"_a, "share"_a,
+      "Where the pads of a hand of many joints, open by `share` in [0, 1], would meet, in its tool frame (3,) [m], how "
+      "far apart\nthey are (negative: they have passed each other) [m], and the steepest angle of a pad's push to the "
+      "line on which they close [rad].");
   m.def("_synthesis_option_table", [] { return option_table(synthesis_fields()); });
   m.def("_synthesis_option_bounds", [] { return synthesis_options().bounds(); });
   bind_success(m);

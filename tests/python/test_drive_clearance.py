@@ -100,7 +100,9 @@ def test_one_that_is_too_large_is_told_with_one_that_works(roomy: dict[str, Any]
 def test_motions_in_passing_are_refused_beside_it(
     plan: mg.part_supply.ScenarioPlan, small_plan: mg.part_supply.ScenarioPlan
 ) -> None:
-    with pytest.raises(mg.InvalidInput, match=r"scenario\.yaml:\d+: drive_clearance = .*: motions of a drive-by do not keep it"):
+    with pytest.raises(
+        mg.InvalidInput, match=r"scenario\.yaml: drive_clearance = .*: motions of a drive-by do not keep it"
+    ):
         mg.part_supply.plan_drive_by_picks(plan)
     values = mg.part_supply.plan_drive_by_picks(small_plan).plan_to_dict()
     assert values["drive_by"]["motions"]

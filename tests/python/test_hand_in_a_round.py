@@ -14,7 +14,9 @@ import yaml
 
 import mmgrasp as mg
 from conftest import ASSETS
+from frame_folders import run, write_frames, write_sensors
 from mmgrasp import sim
+from mmgrasp.cli import main
 from mmgrasp.part_supply import ScenarioPlan, plan_part_supply
 from mmgrasp.viz.scene import PlanScene
 from mmgrasp.viz.timeline import State
@@ -75,7 +77,7 @@ def test_the_pads_close_around_the_tool_frame(kind: str, against: tuple[str, ...
     setup = mg.load_scenario(written(tmp_path, with_hand(OMNI, PINCH | {"type": kind}, tool))).setup
     hand = setup.gripper
     assert sorted(hand.finger_links) == sorted(f"hand_{name}_tip" for name in against)
-    for opening in np.linspace(hand.openings[1], hand.max_opening, 7):  # closed, three tips would overlap by 3 mm
+    for opening in np.linspace(hand.min_opening, hand.max_opening, 7):
         middles = [tip_middle(setup.robot, hand.joint_values(opening), tool, name) for name in against]
         # Fingers of one side, thumb or one finger of the other: the pads are half a box of 24 mm nearer.
         one = middles[0] @ hand.closing
@@ -137,6 +139,124 @@ def test_a_part_stays_in_the_hand(planned: tuple[ScenarioPlan, Path]) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("kind", ["pinch", "cylindrical"])
+def test_a_round_in_passing_is_verified(kind: str, tmp_path: Path) -> None:
+    raw = with_hand(OMNI, PINCH | {"type": kind}, f"hand_tcp_{kind}")
+    block = {"type": "block", "grid": [1, 2], "spacing": [0.09, 0.2]}
+    raw["trays"] = [raw["trays"][0] | {"parts": block, "targets": [0, 1]}]
+    raw["part_types"]["block"] = {"box": [0.04, 0.09, 0.07]}
+    path = written(tmp_path, raw)
+    assert main(["plan", str(path), "--drive-by", "--no-pictures", "-o", str(tmp_path / "out")]) == 0
+    assert main(["verify", str(tmp_path / "out/plan.json"), "--scenario", str(path), "--samples", "100"]) == 0
+    content = json.loads((tmp_path / "out/plan.json").read_text())
+    assert len(content["picks"]) == len(content["drive_by"]["motions"]) == 2
+
+
+def test_a_part_beside_one_side_is_not_held(tmp_path: Path) -> None:
+    """Two of three fingertips meet the box, 30 mm from the thumb's pad: both are of one side."""
+    path = written(tmp_path, with_hand(OMNI, PINCH | {"type": "cylindrical"}, "hand_tcp_cylindrical"))
+    setup = mg.load_scenario(path).setup
+    hand = setup.gripper
+    for side in (-1, 1):
+        box = [mg.LinkShape(mg.Box([0.02, 0.1, 0.05]), mg.pose(side * 0.02 * hand.closing))]
+        assert mg.grasping.fingers_meet(setup.arm, hand, box, [mg.Grasp(np.eye(4), 0.04)]) == [False]
+    both = [mg.LinkShape(mg.Box([0.04, 0.1, 0.05]))]
+    assert mg.grasping.fingers_meet(setup.arm, hand, both, [mg.Grasp(np.eye(4), 0.04)]) == [True]
+
+
+def own_profile(kind: str = "cylindrical", **changes: Any) -> dict[str, Any]:
+    """The shipped section written out for the mounted hand, with one type: two fingers and thumb as given."""
+    text = (ASSETS / "grippers" / "sdhlike" / "sdhlike.yaml").read_text()
+    names = re.sub(r"\b((thumb|finger_[12])_(proximal|distal)|spread(?=: \d)|(?<=\[)spread)\b", r"hand_\1", text)
+    section: dict[str, Any] = yaml.safe_load(names)["gripper"]
+    ends = section["types"][kind]
+    ends["open"] |= changes.get("open", {})
+    ends["closed"] |= changes.get("closed", {})
+    return {"approach": [0, 0, 1], "groups": section["groups"], "types": {"own": ends}}
+
+
+def all_fingers(proximal: float) -> dict[str, float]:
+    """Values of all fingers at which their tips stay upright."""
+    return {
+        f"hand_{k}_{j}": s * proximal
+        for k in ("thumb", "finger_1", "finger_2")
+        for j, s in (("proximal", 1), ("distal", -1))
+    }
+
+
+def test_a_type_that_closes_past_contact_closes_until_its_fingers_meet(tmp_path: Path) -> None:
+    """The pads' distance by forward kinematics is the opening, from where they touch on."""
+    tool = "hand_tcp_cylindrical"
+    section = own_profile(closed=all_fingers(0.4))
+    setup = mg.load_scenario(written(tmp_path, with_hand(OMNI, section, tool))).setup
+    hand = setup.gripper
+    assert hand.min_opening < 1e-6
+    for opening in np.linspace(0, hand.max_opening, 9):
+        thumb, finger = (
+            tip_middle(setup.robot, hand.joint_values(opening), tool, name) @ hand.closing
+            for name in ("thumb", "finger_1")
+        )
+        assert abs(thumb - finger) - 0.024 == pytest.approx(opening, abs=3e-4)
+
+
+def test_sides_that_do_not_close_alike_are_refused(tmp_path: Path) -> None:
+    section = own_profile(open={"hand_thumb_proximal": 0.15, "hand_thumb_distal": -0.15})
+    with pytest.raises(mg.InvalidInput, match=r"the middle of the pads of own moves by 0\.\d+ m while they close"):
+        mg.load_scenario(written(tmp_path, with_hand(OMNI, section, "hand_tcp_cylindrical")))
+
+
+def test_a_still_group_may_be_called_fingers(tmp_path: Path) -> None:
+    section = own_profile()
+    section["groups"]["fingers"] = section["groups"].pop("spread")
+    setup = mg.load_scenario(written(tmp_path, with_hand(OMNI, section, "hand_tcp_cylindrical"))).setup
+    assert len(setup.gripper.groups) == 2 and list(setup.gripper.preshape) == ["fingers"]
+
+
+@pytest.mark.slow
+def test_grasps_of_a_map_for_the_hand_of_a_scenario(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """`mmgrasp grasp` takes the type that the scenario chose, its own section or a profile's."""
+    write_frames(tmp_path / "frames", "npz", 18)
+    write_sensors(tmp_path / "frames")
+    assert run(tmp_path / "frames", tmp_path / "map", "--voxel", "0.003") == 0
+    for section in (PINCH, own_profile("pinch") | {"type": "own", "clearance": 0.012}):
+        path = written(tmp_path, with_hand(OMNI, section, "hand_tcp_pinch"))
+        capsys.readouterr()
+        assert main(["grasp", str(tmp_path / "map"), "--gripper", str(path), "--samples", "400", "--json"]) == 0
+        found = json.loads(capsys.readouterr().out)["objects"]
+        kinds = {grasp["type"] for thing in found for grasp in thing["grasps"]}
+        assert kinds == {section["type"]}
+
+
+@pytest.mark.parametrize(
+    ("change", "line", "said"),
+    [
+        ({"format": "nonsense"}, 1, "format = 'nonsense': must be one of mmgrasp-robot"),
+        ({"gripper.clearence": 3}, 0, "unknown key.*did you mean clearance"),
+        ({"gripper.approach": None}, 0, "approach is missing"),
+        ({"gripper.types.pinch.open.spread": 9.0}, 0, r"gripper.types.pinch.open.spread"),
+    ],
+)
+def test_a_bad_profile_is_told_where_it_is_named(change: dict[str, Any], line: int, said: str, tmp_path: Path) -> None:
+    profile = yaml.safe_load((ASSETS / "grippers" / "sdhlike" / "sdhlike.yaml").read_text())
+    for name, value in change.items():
+        *keys, last = name.split(".")
+        at = profile
+        for key in keys:
+            at = at[key]
+        at[last] = value
+        if value is None:
+            del at[last]
+    (tmp_path / "own.yaml").write_text(yaml.safe_dump(profile, sort_keys=False))
+    path = written(tmp_path, with_hand(OMNI, PINCH | {"name": "own.yaml"}, "hand_tcp_pinch"))
+    with pytest.raises(mg.InvalidInput, match=said) as caught:
+        mg.load_scenario(path)
+    places = re.findall(r"(\w+\.yaml):(\d+)", str(caught.value))
+    assert [name for name, _ in places] == ["hand.yaml", "own.yaml"]
+    assert yaml.safe_load(path.read_text().splitlines()[int(places[0][1]) - 1]) == {"name": "own.yaml"}
+    assert not line or int(places[1][1]) == line
+
+
+@pytest.mark.slow
 def test_a_scanned_tray_is_emptied(tmp_path: Path) -> None:
     plan = plan_part_supply(mg.load_scenario(written(tmp_path, with_hand(SCANNED, PINCH, "hand_tcp_pinch"))))
     assert plan.outcome == mg.Outcome.solved, plan
@@ -147,7 +267,7 @@ def test_a_scanned_tray_is_emptied(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("gripper", "tool", "said"),
     [
-        ({"type": None}, "hand_tcp_pinch", "type is missing.*one of pinch, cylindrical, spherical"),
+        ({"type": None}, "hand_tcp_pinch", "gripper: type is missing.*one of pinch, cylindrical, spherical"),
         ({"type": "pich"}, "hand_tcp_pinch", r"gripper.type = 'pich': must be one of pinch, cylindrical, spherical"),
         ({"type": "spherical"}, "hand_tcp", "closes from all around .a pad pushes at 60 degrees"),
         ({}, "hand_tcp", r"the pads of pinch close around \[0.0191, 0.0000, -0.0005\] m in hand_tcp"),
@@ -167,7 +287,7 @@ def test_a_hand_that_does_not_fit_is_refused_at_its_line(
     path = written(tmp_path, with_hand(OMNI, section, tool))
     with pytest.raises(mg.InvalidInput, match=said) as caught:
         mg.load_scenario(path)
-    assert re.search(r"(hand|tiago|sdhlike)\.yaml:\d+", str(caught.value))
+    assert re.match(r".*/hand\.yaml:\d+: gripper", str(caught.value))
 
 
 def test_the_frame_that_is_proposed_is_taken(tmp_path: Path) -> None:

@@ -78,7 +78,7 @@ def test_listed_grasps_are_refused_at_their_entry(tmp_path: Path) -> None:
     xyz, rpy = [0.0, 0.0, 0.02], [0.0, 1.5707963, 0.0]
     assert np.allclose(mg.pose(xyz, rpy=rpy), down, atol=1e-6)
     listed = f"grasps: [{{pose: {{xyz: {xyz}, rpy: {rpy}}}, opening: 0.05}}, {{pose: {{xyz: {xyz}, rpy: [0, 1.5707963, 1.5707963]}}, opening: 0.0005}}]"
-    with pytest.raises(mg.InvalidInput, match=r"grasps\[1\].*does not hold part type bracket.*finger links"):
+    with pytest.raises(mg.InvalidInput, match=r"grasps\[1\].*does not hold part type bracket.*both sides"):
         mg.load_scenario(with_brackets(tmp_path, f"box: [0.0005, 0.05, 0.07], {listed}"))
 
 

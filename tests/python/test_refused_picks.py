@@ -105,7 +105,10 @@ def test_a_tray_too_high_is_lowered(small: dict[str, Any], write: Callable[..., 
         assert plan.outcome != mg.Outcome.solved
         return plan.obstructions[0].message
 
-    said = re.search(r"lie ([\d.]+) m above all that was found in the arm's reach, wherever the base stands: lower the tray", words(2.8))
+    said = re.search(
+        r"lie ([\d.]+) m above all that was found in the arm's reach, wherever the base stands: lower the tray",
+        words(2.8),
+    )
     assert said
     assert "above all that was found" in words(2.83 - float(said[1]))
     assert "above all that was found" not in words(2.79 - float(said[1]))

@@ -12,7 +12,7 @@ import mmgrasp as mg
 from conftest import ASSETS
 from mmgrasp import sim
 from mmgrasp.grasping import HandJoint, eigengrasp_hand
-from mmgrasp.sim.finger_drives import finger_drives
+from mmgrasp.sim.finger_drives import finger_drives, finger_sides
 
 pytest.importorskip("mujoco", reason="MuJoCo is not installed (pip install 'mmgrasp[sim]')")
 
@@ -83,6 +83,27 @@ def test_a_joint_pushes_as_far_as_its_finger_reaches() -> None:
         assert drives[name].stiffness(8000.0) == pytest.approx(8000.0 * LOWER**2 / 2, rel=2e-3)
     for name in ("thumb_proximal", "spread"):  # hold their values
         assert drives[name].limit(40.0) == 40.0
+
+
+def test_a_hand_that_does_not_close_far_is_as_strong() -> None:
+    """Openings below min_opening are closed: the middle of the joints' way is not the middle of the opening."""
+    robot, hand = three_fingers(), pinching(three_fingers())
+    short = mg.Hand(
+        hand.tool_link, approach=hand.approach, closing=hand.closing, max_opening=0.09, min_opening=0.06,
+        finger_depth=0.04, finger_width=0.02, joints=hand.joints, preshape=hand.preshape, finger_links=hand.finger_links,
+    )  # fmt: skip
+    assert finger_drives(robot, short)["finger_1_proximal"].reach == pytest.approx(LOWER, rel=1e-3)
+
+
+def test_sides_are_what_is_on_either_side() -> None:
+    robot = three_fingers()
+    assert sorted(map(sorted, finger_sides(robot, pinching(robot)))) == [["finger_1_tip"], ["finger_2_tip"]]
+
+
+def test_a_part_may_lie_below_the_floor_of_a_world_without_one() -> None:
+    part = sim.SimPart("cube", [mg.LinkShape(mg.Box([0.03, 0.03, 0.03]))], mg.pose([1, 0, -0.2]), mass=0.1)
+    scene = sim.SimScene(mg.Robot.from_strings(SWING), mg.World(), [part])
+    assert scene.built.floor == pytest.approx(-0.215)
 
 
 SWING = """<robot name="swing">

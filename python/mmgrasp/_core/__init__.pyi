@@ -7054,10 +7054,10 @@ def _check_options(section: str, **kwargs: typing.Any) -> None:
     """
 def _checker_option_table() -> dict[str, typing.Any]:
     ...
-def _closing_line(hand: Hand, robot: Robot) -> tuple[numpy.typing.NDArray[numpy.float64], float]:
+def _closing_line(hand: Hand, robot: Robot, share: float) -> tuple[numpy.typing.NDArray[numpy.float64], float, float]:
     """
-    Where the pads of a hand of many joints, half open, would meet, in its tool frame (3,) [m], and the steepest angle of a
-    pad's push to the line on which they close [rad].
+    Where the pads of a hand of many joints, open by `share` in [0, 1], would meet, in its tool frame (3,) [m], how far apart
+    they are (negative: they have passed each other) [m], and the steepest angle of a pad's push to the line on which they close [rad].
     """
 def _cuboid_option_table() -> dict[str, typing.Any]:
     ...
@@ -7308,7 +7308,7 @@ def finger_length_range(grasp: AssemblyGrasp, operation: AssemblyOperation, *, s
     """
 def fingers_meet(arm: JointGroup, hand: Hand, part: collections.abc.Sequence[LinkShape], grasps: collections.abc.Sequence[Grasp], *, mesh_tolerance: float = 0.0) -> list[bool]:
     """
-    Tells of each grasp of a part whether two of the hand's finger links meet the part at once, closing from the
+    Tells of each grasp of a part whether finger links of both sides meet the part at once, closing from the
     grasp's opening by at most 10 mm or a quarter of it, whichever is more, wherever within 0.2 mm along the
     closing axis the hand stands: a plan's own check asks for that. Fingers that leave a gap when they are closed
     cannot hold what is thinner. `arm`, whose tip carries the hand, says how all other joints stand; its robot's

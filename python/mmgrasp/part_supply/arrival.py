@@ -135,7 +135,9 @@ def arrive(
     if not stops:
         raise InvalidInput(f"plan = {_name(plan)}: holds no stops")
     if not 0 <= stop < len(stops):
-        raise InvalidInput(f"stop = {stop}: must be an index from 0, the plan has {len(stops)} stop{'s' * (len(stops) > 1)}")
+        raise InvalidInput(
+            f"stop = {stop}: must be an index from 0, the plan has {len(stops)} stop{'s' * (len(stops) > 1)}"
+        )
     index = {part.name: (t, p) for t, tray in enumerate(loaded.trays) for p, part in enumerate(tray.tray.parts)}
     gone = {part for at, part in picks if at < stop}
     for name in picked:

@@ -13,7 +13,7 @@ import json
 import os
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, NoReturn, Unpack
+from typing import Any, Unpack
 
 import numpy as np
 
@@ -23,7 +23,6 @@ from .._core import InvalidInput, Outcome, Pick
 from .._files import write_files
 from .._options import DriveByOptions
 from .._progress import Progress
-from ..documents.reading import read_yaml
 from ..scenario import Scenario
 from .known_motion import KnownPick
 from .planning import ScenarioPlan, file_name
@@ -195,22 +194,17 @@ class DriveByPlan:
 
 def check_in_passing(scenario: Scenario) -> None:
     """Raises InvalidInput for a round of which no part can be taken in passing."""
+    sections = scenario.setup.sections
+    assert sections is not None and sections.place_region is not None
     if scenario.setup.gripper.suction is not None:
-        _refuse(scenario, "gripper suction", "drive-by needs a hand with fingers, which close in passing")
+        sections.gripper["suction"].fail("drive-by needs a hand with fingers, which close in passing")
     if scenario.setup.place_region.capacity:
-        _refuse(scenario, "place_region capacity", "drive-by takes no parts of several trips in passing: leave it out")
+        sections.place_region["capacity"].fail("drive-by takes no parts of several trips in passing: leave it out")
     if scenario.drive_clearance:
-        _refuse(scenario, "drive_clearance", "motions of a drive-by do not keep it: leave it out for them")
-
-
-def _refuse(scenario: Scenario, keys: str, rule: str) -> NoReturn:
-    """Raises InvalidInput at the line of these keys, as far as the scenario's own file has them."""
-    node = read_yaml(scenario.source).root
-    for key in keys.split():
-        if key not in node:
-            raise InvalidInput(f"{scenario.source}: {'.'.join(keys.split())}: {rule}")
-        node = node[key]
-    node.fail(rule)
+        raise InvalidInput(
+            f"{scenario.source}: drive_clearance = {scenario.drive_clearance:g}: motions of a drive-by do not keep it: "
+            "leave it out for them"
+        )
 
 
 @checked

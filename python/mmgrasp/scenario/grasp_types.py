@@ -14,6 +14,10 @@ CLEARANCE = 0.01
 """Unless a section says otherwise: kept free on each side of a part [m]."""
 SLANT = np.radians(15.0)
 """Pads of two sides face each other within this [rad]."""
+SAME_VALUE = 1e-12
+"""Joints whose two values differ by less stand still."""
+POSTURES = 9
+"""At which the pads are looked at, from closed to open."""
 PLAY_ALONG, PLAY_BESIDE = 0.005, 0.001
 """So far may the tool frame be from where half open pads close, along the approach and across it [m]: tips that turn rise while they close."""
 
@@ -30,6 +34,23 @@ class HandTypes:
 
 
 @dataclass(frozen=True)
+class TypesSection:
+    """Where types of grasp are read from."""
+
+    asked: Node
+    """The section that asks for a hand."""
+    node: Node
+    """Has `groups`, joints that one number moves together, and `types`, their values opened and closed [rad] or [m]."""
+    approach: np.ndarray
+    prefix: str
+    """Stands before the joints' names on the robot."""
+    chosen: Node | None
+    """The name of a type; None: all of them."""
+    clearance: float
+    payload: float
+
+
+@dataclass(frozen=True)
 class _GraspType:
     """A type as it is written: its groups of joints, and their values by name."""
 
@@ -39,12 +60,19 @@ class _GraspType:
 
     def together(self) -> _GraspType:
         """All groups that close as one, which the opening moves."""
-        closing = [g for g in self.groups if any(self.opened[name] != self.closed[name] for name in g[1])]
-        still = [g for g in self.groups if g not in closing]
-        fingers = [("fingers", [name for _, names in closing for name in names])] if closing else []
-        return _GraspType([*fingers, *still], self.opened, self.closed)
+        still = [g for g in self.groups if all(abs(self.opened[n] - self.closed[n]) < SAME_VALUE for n in g[1])]
+        names = [name for group in self.groups if group not in still for name in group[1]]
+        fingers = "fingers"
+        while fingers in [name for name, _ in still]:
+            fingers += "_"
+        return _GraspType([(fingers, names), *still] if names else still, self.opened, self.closed)
 
-    def hand(self, robot: Robot, tool_link: str, approach: np.ndarray, name: str, clearance: float) -> Hand:
+    def closed_to(self, share: float) -> _GraspType:
+        """Closed no farther than to be open by `share` of what it was."""
+        closed = {name: value + share * (self.opened[name] - value) for name, value in self.closed.items()}
+        return _GraspType(self.groups, self.opened, closed)
+
+    def hand(self, section: TypesSection, robot: Robot, tool_link: str, name: str) -> Hand:
         joints = [name for _, names in self.groups for name in names]
         return eigengrasp_hand(
             robot,
@@ -52,56 +80,83 @@ class _GraspType:
             self.groups,
             open=[self.opened[joint] for joint in joints],
             closed=[self.closed[joint] for joint in joints],
-            approach=approach,
+            approach=section.approach,
             name=name,
-            clearance=clearance,
-        )
+            clearance=section.clearance,
+        ).with_payload(section.payload)
 
 
-def read_grasp_types(node: Node, robot: Robot, tool_link: str, approach: np.ndarray) -> dict[str, Hand]:
-    """Hands by type. `groups` names the joints that one number moves together, `types` their values opened and closed [rad] or [m]."""
+def read_grasp_types(section: TypesSection, robot: Robot, tool_link: str) -> dict[str, Hand]:
+    """Hands by type, each group of joints closing by itself."""
+    types = _read_types(section.node, robot, section.prefix)
+    kinds = [section.chosen.choice(*types)] if section.chosen else list(types)
     hands: dict[str, Hand] = {}
-    for kind, made in _read_types(node, robot, "").items():
-        with node["types"][kind].blamed():
-            hands[kind] = made.hand(robot, tool_link, approach, kind, CLEARANCE)
+    for kind in kinds:
+        with section.node["types"][kind].blamed():
+            hands[kind] = types[kind].hand(section, robot, tool_link, kind)
     return hands
 
 
-def read_hand_of_type(
-    node: Node, chosen: Node | None, robot: Robot, tool_link: str, approach: np.ndarray, prefix: str, clearance: float
-) -> Hand:
-    """The hand of one type, whose fingers close together as the opening says. `chosen`: its name, None where there is
-    one alone; `prefix` stands before the joints' names on the robot.
-    """
-    types = _read_types(node, robot, prefix)
-    if chosen is None:
-        if len(types) > 1:
-            node.fail(f"type is missing: a round takes all parts by one type of grasp, one of {', '.join(types)}")
-        kind = next(iter(types))
-    else:
-        kind = chosen.choice(*types)
-    with node["types"][kind].blamed():
-        hand = types[kind].together().hand(robot, tool_link, approach, kind, clearance)
-    _check_pads(chosen or node["types"][kind], robot, hand, kind)
+def read_hand_of_type(section: TypesSection, robot: Robot, tool_link: str) -> Hand:
+    """The hand of the chosen type, or of the only one, whose fingers close together until they meet, as the opening says."""
+    types = _read_types(section.node, robot, section.prefix)
+    if section.chosen is None and len(types) > 1:
+        section.asked.fail(f"type is missing: a round takes all parts by one type of grasp, one of {', '.join(types)}")
+    kind = section.chosen.choice(*types) if section.chosen else next(iter(types))
+    node = section.node["types"][kind]
+    with node.blamed():
+        made = types[kind].together()
+        hand = made.hand(section, robot, tool_link, kind)
+        share = _first_touch(hand, robot)
+        if share > 0:
+            hand = made.closed_to(share).hand(section, robot, tool_link, kind)
+    if not hand.openings:
+        node.fail("must part the fingertips all the way from closed to open")
+    _check_pads(section.chosen or node, robot, hand, kind)
     return hand
 
 
+def _first_touch(hand: Hand, robot: Robot) -> float:
+    """How far open the pads are where they first meet; 0: they do not pass each other."""
+    low, high = 0.0, 1.0
+    if _closing_line(hand, robot, low)[1] >= 0:
+        return 0.0
+    while high - low > 1e-9:
+        middle = (low + high) / 2
+        if _closing_line(hand, robot, middle)[1] < 0:
+            low = middle
+        else:
+            high = middle
+    return high
+
+
 def _check_pads(node: Node, robot: Robot, hand: Hand, kind: str) -> None:
-    """A round's grasps lie between two sides, with the tool frame midway between the pads."""
-    middle, slant = _closing_line(hand, robot)
+    """A round's grasps lie between two sides that close alike, with the tool frame midway between the pads."""
+    lines = [_closing_line(hand, robot, share) for share in np.linspace(0, 1, POSTURES)]
+    slant = max(line[2] for line in lines)
     if slant > SLANT:
         node.fail(
-            f"{kind} closes from all around (a pad pushes at {np.degrees(slant):.0f} degrees to the line of closing, at most "
-            f"{np.degrees(SLANT):.0f}): a round's grasps lie between two sides; `mmgrasp grasp` seeks such grasps"
+            f"{kind} closes from all around (a pad pushes at {np.degrees(slant):.0f} degrees to the line of closing, at "
+            f"most {np.degrees(SLANT):.0f}): a round's grasps lie between two sides; `mmgrasp grasp` seeks such grasps"
         )
-    along = abs(middle @ hand.approach)
-    beside = np.linalg.norm(middle - (middle @ hand.approach) * hand.approach)
-    if along > PLAY_ALONG or beside > PLAY_BESIDE:
+    middle = lines[POSTURES // 2][0]
+    moved = max(_beside(line[0] - middle, hand) for line in lines)
+    if moved > PLAY_BESIDE:
+        node.fail(
+            f"the middle of the pads of {kind} moves by {moved:.4f} m while they close, at most {PLAY_BESIDE:g}: both "
+            "sides must close alike, so that they meet a part at once"
+        )
+    if abs(middle @ hand.approach) > PLAY_ALONG or _beside(middle, hand) > PLAY_BESIDE:
         place = ", ".join(f"{value:.4f}" for value in middle)
         node.fail(
-            f"the pads of {kind} close around [{place}] m in {hand.tool_link}: must be its origin; add {{name: pads, parent: "
-            f"{hand.tool_link}, pose: {{xyz: [{place}]}}}} to robot.frames, and make pads the tool_link"
+            f"the pads of {kind} close around [{place}] m in {hand.tool_link}: must be its origin; add {{name: pads, "
+            f"parent: {hand.tool_link}, pose: {{xyz: [{place}]}}}} to robot.frames, and make pads the tool_link"
         )
+
+
+def _beside(place: np.ndarray, hand: Hand) -> float:
+    """How far a place is from the line along the approach through the tool frame's origin [m]."""
+    return float(np.linalg.norm(place - (place @ hand.approach) * hand.approach))
 
 
 def _read_types(node: Node, robot: Robot, prefix: str) -> dict[str, _GraspType]:

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from typing import Any
 
 import numpy as np
 
 from .._core import Hand, HandJoint, InvalidInput, Mesh, Robot
-from ..documents.reading import Node, read_yaml
-from .grasp_types import CLEARANCE, read_hand_of_type
-from .named_files import find_file, profile_path
+from ..documents.reading import Node
+from .grasp_types import CLEARANCE, TypesSection, read_grasp_types, read_hand_of_type
+from .named_files import find_file, profile_path, read_profile
 from .robot_names import check_link, joint_value
 from .suction_section import read_cups
 
@@ -25,13 +26,9 @@ def read_hand(node: Node, robot: Robot, tool_link: str) -> Hand:
         return read_cups(node, robot, tool_link, read_axes(node)["approach"], payload)
     if "from_robot" in node:
         return _gripper_from_robot(node, robot, tool_link, payload)
-    if "groups" in node:
-        node.mapping("approach groups types", "type clearance closing_speed payload")
-        return _hand_of_type(node, node, robot, tool_link, "").with_payload(payload)
-    if "name" in node:
-        node.mapping("name", "type prefix clearance closing_speed payload")
-        prefix = node["prefix"].string() if "prefix" in node else ""
-        return _hand_of_type(node, _profile_of(node["name"]), robot, tool_link, prefix).with_payload(payload)
+    if has_types(node):
+        with _blame(node):
+            return read_hand_of_type(_types_section(node), robot, tool_link)
     node.mapping(
         "approach closing max_opening finger_depth finger_width joints finger_links", "clearance closing_speed payload"
     )
@@ -69,28 +66,57 @@ def read_hand(node: Node, robot: Robot, tool_link: str) -> Hand:
     return hand
 
 
-def _hand_of_type(node: Node, profile: Node, robot: Robot, tool_link: str, prefix: str) -> Hand:
-    """A hand of many joints in one of its types of grasp; `profile` has the types."""
-    return read_hand_of_type(
+def has_types(node: Node) -> bool:
+    """The section is a hand of many joints by its types of grasp, its own or a profile's."""
+    return bool({"name", "groups", "types"} & set(node.raw)) if isinstance(node.raw, dict) else False
+
+
+def read_types(node: Node, robot: Robot, tool_link: str) -> dict[str, Hand]:
+    """The hands of such a section by type, each group of joints closing by itself; one where the section chooses it."""
+    with _blame(node):
+        return read_grasp_types(_types_section(node), robot, tool_link)
+
+
+def _types_section(node: Node) -> TypesSection:
+    """`name` of a profile, or groups and types; what the section says goes before what the profile says."""
+    own = "approach groups types"
+    if "name" in node:
+        node.mapping("name", "type prefix clearance closing_speed payload")
+        profile = _profile_of(node["name"])
+        if "types" not in profile:
+            node["name"].fail("has no types of grasp: must be the profile of a hand of many joints")
+        profile.mapping(own, "clearance payload")
+    else:
+        profile = node.mapping(own, "type clearance closing_speed payload")
+
+    def number(key: str, otherwise: float, **bounds: float) -> float:
+        for section in (node, profile):
+            if key in section:
+                return section[key].number(**bounds)
+        return otherwise
+
+    return TypesSection(
+        node,
         profile,
-        node["type"] if "type" in node else None,
-        robot,
-        tool_link,
         read_axes(profile)["approach"],
-        prefix,
-        node["clearance"].number(least=0) if "clearance" in node else CLEARANCE,
+        node["prefix"].string() if "prefix" in node else "",
+        node["type"] if "type" in node else None,
+        number("clearance", CLEARANCE, least=0),
+        number("payload", math.inf, above=0),
     )
 
 
 def _profile_of(name: Node) -> Node:
-    """The section `gripper` of a profile that names types of grasp."""
+    """The section `gripper` of the profile of this name, or in this file."""
     text = name.string()
     with name.blamed():
         path = find_file(name) if text.endswith((".yaml", ".yml")) else profile_path(text, ("grippers", "robots"))
-    section = read_yaml(path).root["gripper"]
-    if "types" not in section:
-        name.fail("has no types of grasp: must be the profile of a hand of many joints")
-    return section
+    return read_profile(path)["gripper"]
+
+
+def _blame(node: Node) -> contextlib.AbstractContextManager[None]:
+    """What is refused in a profile is told with the key that names it."""
+    return node["name"].blamed() if "name" in node else contextlib.nullcontext()
 
 
 def check_finger_travel(section: Node, robot: Robot, hand: Hand) -> None:

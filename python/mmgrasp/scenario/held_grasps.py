@@ -17,9 +17,10 @@ class ClosingHand:
 
     arm: JointGroup
     hand: Hand
-    robot: Robot
     mesh_tolerance: float = 0.0
     """Its meshes may stick out so far beyond those by which `verify` judges [m]."""
+    robot: Robot | None = None
+    """Whose links are the pads and bodies of a hand of many joints; None: two pads."""
 
     def meets(self, shapes: list[LinkShape], grasps: list[Grasp]) -> list[bool]:
         """Says of each grasp whether the closing fingers meet the part, as `verify` asks."""

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from .._core import InvalidInput
 from .._files import ASSETS, shipped
-from ..documents.reading import Node, near_miss
+from ..documents.reading import RENAMED, Node, near_miss, read_yaml
 
 
 def find_file(node: Node) -> Path:
@@ -52,3 +52,15 @@ def profile_path(name: str, folders: tuple[str, ...] = ("robots",)) -> Path:
         what = "robot" if folders == ("robots",) else "robot or gripper"
         raise InvalidInput(f"{what} name = {name!r}: no such {what}{near_miss(name, list(known))}")
     return known[name]
+
+
+def read_profile(path: Path) -> Node:
+    """The top of a robot profile, its header and keys checked."""
+    return check_profile(read_yaml(path).root)
+
+
+def check_profile(profile: Node) -> Node:
+    """The same, once its header and keys are those of a robot profile."""
+    profile["format"].choice("mmgrasp-robot")
+    profile.read_version(3, RENAMED)
+    return profile.mapping("format version robot gripper", "place_region")

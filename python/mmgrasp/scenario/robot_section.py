@@ -19,11 +19,11 @@ from .._core import (
 )
 from .._files import shipped
 from .._progress import Progress
-from ..documents.reading import RENAMED, Node, near_miss, read_yaml
+from ..documents.reading import Node, near_miss, read_yaml
 from .closed_fingers import fingers_may_meet, held_links_may_meet
-from .grasp_types import HandTypes, opened, read_grasp_types
-from .gripper_section import check_finger_travel, read_axes, read_hand
-from .named_files import find_file, profile_path
+from .grasp_types import HandTypes, opened
+from .gripper_section import check_finger_travel, has_types, read_hand, read_types
+from .named_files import check_profile, find_file, profile_path
 from .robot_names import check_link, joint_value
 from .shapes import read_shapes
 from .wheels import limits_of_wheels
@@ -54,6 +54,14 @@ class RobotSetup:
     """How fast the gripper's opening shrinks [m/s] (P1 4.4.1)."""
     mesh_tolerance: float = 0.0
     """The coarsest one of its robots [m]."""
+    sections: RobotSections | None = None
+    """Where it was read from."""
+
+    @property
+    def rates_all_pads(self) -> bool:
+        """The gripper is more than two pads: grasps of a map are sought for its own links."""
+        own = self.sections is not None and has_types(self.sections.gripper)
+        return own or len(self.gripper.groups) > 1
 
 
 @dataclass
@@ -92,9 +100,7 @@ def _named_profile(own: Node) -> RobotSections | None:
 
 
 def _profile_sections(profile: Node) -> RobotSections:
-    profile["format"].choice("mmgrasp-robot")
-    profile.read_version(3, RENAMED)
-    profile.mapping("format version robot gripper", "place_region")
+    check_profile(profile)
     place_region = profile["place_region"] if "place_region" in profile else None
     return RobotSections(profile["robot"], profile["gripper"], place_region)
 
@@ -124,7 +130,7 @@ def read_arm_of(source: str, progress: Progress = None) -> ArmSetup:
 def read_hand_types(source: str, *, arm: bool = False, progress: Progress = None) -> HandTypes:
     """A gripper by its types of grasp, with `arm` also the arm that carries it; named and refused as in read_gripper()."""
     sections = _sections_of(source)
-    if "groups" not in sections.gripper and "types" not in sections.gripper:
+    if not has_types(sections.gripper):
         if not arm:
             return HandTypes({"": read_gripper(source)})
         setup = _arm_setup(sections.robot, sections.gripper, progress)
@@ -133,8 +139,7 @@ def read_hand_types(source: str, *, arm: bool = False, progress: Progress = None
     robot = compose(node)
     tool_link = node["tool_link"].string()
     check_link(robot, node["tool_link"])
-    hand = sections.gripper.mapping("approach groups types")
-    types = read_grasp_types(hand, robot, tool_link, read_axes(hand)["approach"])
+    types = read_types(sections.gripper, robot, tool_link)
     if not arm:
         return HandTypes(types, robot)
     robot = _core.with_sampled_pairs(robot, progress=progress)
@@ -179,7 +184,7 @@ def read_setup(sections: RobotSections, progress: Progress = None) -> RobotSetup
         sections.gripper["closing_speed"].number(least=1e-4, most=10) if "closing_speed" in sections.gripper else 0.1
     )
     place_region = _read_place_region(sections.place_region, bin_pose)
-    return RobotSetup(robot, arm, group, gripper, place_region, home, other, speed, _mesh_tolerance(node))
+    return RobotSetup(robot, arm, group, gripper, place_region, home, other, speed, _mesh_tolerance(node), sections)
 
 
 @dataclass

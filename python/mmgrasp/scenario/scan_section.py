@@ -205,9 +205,9 @@ class ScanReader:
     ) -> Part:
         given = {"samples": SAMPLES, "max_grasps": MOST_GRASPS} | options
         table, room = float(T_world_part[2, 3]), thing.bounds + [[-_ROOM], [_ROOM]]
-        hand = self._closing.hand
-        robot = self._closing.robot if len(hand.groups) > 1 else None  # else two pads
-        found = _core.synthesize_grasps(made.sdf, hand, table=table, object=room, robot=robot, **given)
+        found = _core.synthesize_grasps(
+            made.sdf, self._closing.hand, table=table, object=room, robot=self._closing.robot, **given
+        )
         if found.outcome == Outcome.stopped:
             raise KeyboardInterrupt
         grasps = []

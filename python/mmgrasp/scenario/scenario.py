@@ -184,7 +184,7 @@ def _read_scenario(
     if setup.robot.base == "fixed":
         root["robot"].fail("a part-supply round needs base: diff_drive or omni")
     _check_metres(root, obstacles, setup.robot.base_limits["workspace"])
-    closing = ClosingHand(setup.arm, setup.gripper, setup.robot, setup.mesh_tolerance)
+    closing = ClosingHand(setup.arm, setup.gripper, setup.mesh_tolerance, setup.robot if setup.rates_all_pads else None)
     types = read_part_types(root["part_types"], closing, progress) if "part_types" in root else {}
     scans = ScanReader(closing, _in_world(obstacles), find_file, progress)
     trays = _read_trays(root, types, setup, scans)

@@ -1,4 +1,4 @@
-"""What a force at a fingertip asks of each joint of the hand."""
+"""The fingers of a hand in physics: their two sides, and what a force at a fingertip asks of each joint."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class FingerDrive:
 def finger_drives(robot: Robot, hand: Hand) -> dict[str, FingerDrive]:
     """For each joint of the hand, by name. Joints that slide push as they go; those that move no finger keep the force as their torque."""
     table = {j["name"]: j for j in robot.joint_table}
-    before, after = (hand.joint_values(share * hand.max_opening) for share in (0.45, 0.55))
+    before, after = (hand.joint_values(hand.opening_at(share)) for share in (0.45, 0.55))
     places = []
     for values in (before, after):
         poses = robot.link_poses(values)
@@ -49,6 +49,15 @@ def finger_drives(robot: Robot, hand: Hand) -> dict[str, FingerDrive]:
         reach = max(way[link] for link in pushed) / abs(after[joint.name] - before[joint.name])
         drives[joint.name] = FingerDrive(reach, max(len(carrying[link] & moving) for link in pushed))
     return drives
+
+
+def finger_sides(robot: Robot, hand: Hand) -> list[set[str]]:
+    """Finger links on either side of the middle between the outermost ones, along the closing axis of the open hand."""
+    poses = robot.link_poses(hand.joint_values(hand.max_opening))
+    to_tool = np.linalg.inv(poses[hand.tool_link])
+    along = {k: float(hand.closing @ (to_tool @ poses[k] @ middle_of(robot, k))[:3]) for k in hand.finger_links}
+    middle = (min(along.values()) + max(along.values())) / 2
+    return [{k for k, at in along.items() if (at > middle) == side} for side in (False, True)]
 
 
 def _joints_before(robot: Robot, link: str) -> set[str]:

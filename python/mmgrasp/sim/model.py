@@ -74,7 +74,7 @@ class Physics:
 
     time_step: float = 0.002
     """[s]. A held part creeps outwards where the hand swings, with its centripetal acceleration times a step [m/s] (MuJoCo's constraints
-    leave that acceleration out): take 0.0005 for hands that swing faster than 2 m/s."""
+    leave that acceleration out): take finer steps for hands that swing fast."""
     gravity: tuple[float, float, float] = (0.0, 0.0, -9.81)
     """[m/s^2]"""
     finger_friction: float = 0.9

@@ -107,8 +107,9 @@ class ContactLog:
 class PartWatch:
     """Follows one part through a run and judges it in the end."""
 
-    def __init__(self, name: str, T_world_part: np.ndarray, fingers: set[str], hand: set[str]):
-        self.name, self.start, self.fingers, self.hand = name, T_world_part.copy(), fingers, hand
+    def __init__(self, name: str, T_world_part: np.ndarray, sides: list[set[str]], hand: set[str]):
+        """`sides`: fingers either side of the part; `hand`: all that may touch a held part."""
+        self.name, self.start, self.sides, self.hand = name, T_world_part.copy(), sides, hand
         self.squeezed: np.ndarray | None = None
         self.touched = False
         self.held_at: np.ndarray | None = None
@@ -119,7 +120,7 @@ class PartWatch:
     def step(self, T_world_part: np.ndarray, T_world_hand: np.ndarray, touching: set[str], holding: bool) -> None:
         """`touching`: bodies in contact with the part now; `holding`: the arm stands with it lifted."""
         self.touched |= bool(touching & self.hand)
-        if self.squeezed is None and self.fingers and self.fingers <= touching:
+        if self.squeezed is None and self.sides and all(side & touching for side in self.sides):
             self.squeezed = T_world_part.copy()
         if not holding:
             return

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from .._core import InvalidInput, JointGroup, JointTrajectory
 from .control import RecordedState, Recorder, SceneState
 from .execution import Execution, ExecutionOptions
+from .finger_drives import finger_sides
 from .plan_controller import PlanController
 from .result import ContactLog, PartWatch, SimResult
 from .scene import SimScene
@@ -52,10 +53,12 @@ class RunWatch:
     def __init__(self, scene: SimScene, controller: PlanController):
         self.scene, self.controller = scene, controller
         gripper = scene.gripper
-        fingers = set(gripper.finger_links) if gripper else set()
-        hand = fingers | {j["parent"] for j in scene.robot.joint_table if j["name"] in scene.built.fingers}
+        sides = finger_sides(scene.robot, gripper) if gripper and gripper.finger_links else []
+        hand = set(gripper.finger_links if gripper else []) | {
+            j["parent"] for j in scene.robot.joint_table if j["name"] in scene.built.fingers
+        }
         self.tool = f"link/{gripper.tool_link}" if gripper else None
-        self.parts = [PartWatch(name, scene.part_pose(name), fingers, hand) for name in scene.parts]
+        self.parts = [PartWatch(name, scene.part_pose(name), sides, hand) for name in scene.parts]
         self.log = ContactLog()
         self.base_error = self.arm_error = 0.0
 

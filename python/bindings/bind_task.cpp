@@ -299,6 +299,18 @@ void bind_picks(py::module_& m) {
       "fingers to close: all True. InvalidInput where its robot lacks a link or joint of the hand, or an opening is\n"
       "beyond the hand's.");
   m.def(
+      "fingers_fit",
+      [](const JointGroup& arm, const Hand& hand, const std::vector<LinkShape>& part, const std::vector<Grasp>& grasps,
+         double mesh_tolerance) {
+        return interruptible([&] { return fingers_fit(arm, hand, part, grasps, mesh_tolerance); });
+      },
+      py::arg("arm"), py::arg("hand"), py::arg("part"), py::arg("grasps"), py::kw_only(),
+      py::arg("mesh_tolerance") = 0.0,
+      "Tells of each grasp of a part whether its finger links keep out of the part until they are as near as its\n"
+      "opening says, or 1.5 mm or a twentieth of it on either side: where a part is wider beside the pads than "
+      "between\n"
+      "them, fingers would stand in it. Arguments and errors as fingers_meet.");
+  m.def(
       "plan_object_pick",
       [](const JointGroup& arm, const Hand& gripper, const World& world, const std::string& object,
          std::vector<Grasp> grasps, const ReachDatabase& database, const ArrayLike& home, const ArrayLike& base_pose,

@@ -23,6 +23,7 @@ from ._core import (
     sample_grasps as sample_grasps,
     sample_suction_grasps as sample_suction_grasps,
     SampledSuctionGrasps as SampledSuctionGrasps,
+    fingers_fit as fingers_fit,
     fingers_meet as fingers_meet,
     seal_gap as seal_gap,
     suction_share as suction_share,

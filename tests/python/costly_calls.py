@@ -60,6 +60,7 @@ from costly_work import (
     long_operation,
     many_bodies,
     many_grasps_of_nothing,
+    many_grasps_that_fit,
     maximal,
     object_regions,
     octree_file,
@@ -230,6 +231,7 @@ COSTLY: dict[str, Callable[[], CALL]] = {
     "verify.overlapping_bodies": many_bodies,
     "verify.overlapping_bodies, a fine mesh": fine_bodies,
     "fingers_meet": many_grasps_of_nothing,
+    "fingers_fit": many_grasps_that_fit,
     **{name: of(ao.drive_by, call) for name, call in DRIVEN.items()},
 }
 

@@ -240,6 +240,12 @@ def many_grasps_of_nothing() -> CALL:
     return lambda: mg.grasping.fingers_meet(ao.ARM, hand, [BOX], grasps)
 
 
+def many_grasps_that_fit() -> CALL:
+    hand = ao.gripper()
+    grasps = [mg.Grasp(mg.pose([9, 0, 0]), 0.02)] * 1_000_000
+    return lambda: mg.grasping.fingers_fit(ao.ARM, hand, [BOX], grasps)
+
+
 def many_bodies() -> CALL:
     bodies = [
         _core.verify.CheckedBody(str(i), [BOX], mg.pose([0.2 * (i % 200), 0.2 * (i // 200), 0])) for i in range(40_000)

@@ -133,3 +133,37 @@ def test_grippers_whose_fingers_do_not_move_apart_are_refused(tmp_path: Path) ->
     assert both
     assert "joints = []: must name a joint" in refusal(text.replace(both[0], "joints: []\n"))
     assert "moves 0 m along closing" in refusal(text.replace("closing: [0, 1, 0]", "closing: [0, 0, 1]"))
+
+
+def test_a_part_is_no_wider_beside_the_pads() -> None:
+    """A shaft of 24 mm with a cap on the palm's side of the pads, between the fingers: as wide as the shaft and 1.5 mm on either side at most."""
+    setup = mg.load_scenario(STOREROOM).setup
+    hand = setup.gripper
+    poses = setup.robot.link_poses(hand.joint_values(0.024))
+    behind = min(
+        mg.LinkShape(shape.shape, np.linalg.inv(poses[hand.tool_link]) @ poses[link] @ shape.pose).bounds[0][0]
+        for link in hand.finger_links
+        for shape in setup.robot.collisions(link)
+    )
+    assert np.allclose(hand.approach, [1, 0, 0]) and behind < -hand.finger_depth / 2 - 0.01
+    shaft = mg.LinkShape(mg.Box([0.08, 0.024, 0.024]), mg.pose([0.02, 0, 0]))
+
+    def capped(width: float) -> list[mg.LinkShape]:
+        return [shaft, mg.LinkShape(mg.Box([0.01, width, 0.024]), mg.pose([behind + 0.006, 0, 0]))]
+
+    grasp = [mg.Grasp(np.eye(4), 0.024)]
+    most = 0.027 + gap_of_closed_fingers()  # their faces stand so much back, both together; the arm may be 0.2 mm off
+    fits = [
+        mg.grasping.fingers_fit(setup.arm, hand, capped(w), grasp)[0] for w in (0.020, most - 6e-4, most + 2e-4, 0.04)
+    ]
+    assert fits == [True, True, False, False]
+    assert mg.grasping.fingers_meet(setup.arm, hand, capped(0.04), grasp) == [True]
+
+
+def test_listed_grasps_with_fingers_in_the_part_are_refused(tmp_path: Path) -> None:
+    """The pads meet the shaft; what they say of its width is right, and the cap is in the fingers' way."""
+    cap = "{box: [0.024, 0.06, 0.01], pose: {xyz: [0, 0, 0.045]}}"
+    shapes = f"shapes: [{{box: [0.024, 0.024, 0.09]}}, {cap}]"
+    grasp = "grasps: [{pose: {xyz: [0, 0, 0], rpy: [0, 1.57079633, 0]}, opening: 0.024}]"
+    with pytest.raises(mg.InvalidInput, match=r"grasps\[0\].*it is wider beside the pads, fingers would stand in it"):
+        mg.load_scenario(with_brackets(tmp_path, f"{shapes}, {grasp}"))

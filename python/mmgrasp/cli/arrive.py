@@ -27,6 +27,8 @@ def run_arrive(arguments: argparse.Namespace, console: Console) -> int:
     with Reporter(console) as report:
         report("reading", 0.0)
         stops = len(read_plan(arguments.plan)["stops"])
+        if not stops:
+            raise InvalidInput(f"{arguments.plan}: holds no stops")
         if arguments.stop > stops:
             raise InvalidInput(
                 f"--stop {arguments.stop}: must be at most {stops}, the number of stops in {arguments.plan}"

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .._core import Hand, JointGroup, Robot, _closing_line, eigengrasp_hand
+from .._core import Hand, JointGroup, LinkShape, Robot, _closing_line, eigengrasp_hand
 from ..documents.reading import Node, near_miss
 from .robot_names import joint_value
 
@@ -113,7 +113,39 @@ def read_hand_of_type(section: TypesSection, robot: Robot, tool_link: str) -> Ha
     if not hand.openings:
         node.fail("must part the fingertips all the way from closed to open")
     _check_pads(section.chosen or node, robot, hand, kind)
-    return hand
+    return _with_whole_tips(hand, robot)
+
+
+def _with_whole_tips(hand: Hand, robot: Robot) -> Hand:
+    """Pads as deep as the fingertips reach beyond the tool frame and behind it: what is beside them is in the way, too."""
+    poses = robot.link_poses(hand.joint_values(hand.opening_at(0.5)))
+    across = np.cross(hand.approach, hand.closing)
+    T_axes_root = np.eye(4)
+    T_axes_root[:3, :3] = np.vstack((hand.closing, across, hand.approach))
+    T_axes_root = T_axes_root @ np.linalg.inv(poses[hand.tool_link])
+    ends = [
+        [corner[2] for corner in LinkShape(shape.shape, T_axes_root @ poses[link] @ shape.pose).bounds]
+        for link in hand.finger_links
+        for shape in robot.collisions(link)
+    ]
+    behind, beyond = min(low for low, _ in ends), max(high for _, high in ends)
+    return Hand(
+        hand.tool_link,
+        approach=hand.approach,
+        closing=hand.closing,
+        kind=hand.kind,
+        min_opening=hand.min_opening,
+        max_opening=hand.max_opening,
+        finger_depth=2 * max(-behind, beyond),
+        finger_width=hand.finger_width,
+        clearance=hand.clearance,
+        joints=hand.joints,
+        openings=hand.openings,
+        preshape=hand.preshape,
+        finger_links=hand.finger_links,
+        body=hand.body,
+        payload=hand.payload,
+    )
 
 
 def _first_touch(hand: Hand, robot: Robot) -> float:

@@ -26,6 +26,15 @@ class ClosingHand:
         """Says of each grasp whether the closing fingers meet the part, as `verify` asks."""
         return _core.fingers_meet(self.arm, self.hand, shapes, grasps, mesh_tolerance=self.mesh_tolerance)
 
-    def held(self, shapes: list[LinkShape], grasps: list[Grasp]) -> list[Grasp]:
+    def fits(self, shapes: list[LinkShape], grasps: list[Grasp]) -> list[bool]:
+        """Says of each grasp whether the fingers keep out of the part until the pads meet it, as `verify` asks."""
+        return _core.fingers_fit(self.arm, self.hand, shapes, grasps, mesh_tolerance=self.mesh_tolerance)
+
+    def met(self, shapes: list[LinkShape], grasps: list[Grasp]) -> list[Grasp]:
         """Those of the grasps at which the closing fingers meet the part."""
         return [grasp for grasp, meets in zip(grasps, self.meets(shapes, grasps), strict=True) if meets]
+
+    def held(self, shapes: list[LinkShape], grasps: list[Grasp]) -> list[Grasp]:
+        """Those of met() at which no finger stands in the part."""
+        met = self.met(shapes, grasps)
+        return [grasp for grasp, fits in zip(met, self.fits(shapes, met), strict=True) if fits]

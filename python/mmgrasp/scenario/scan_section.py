@@ -217,7 +217,7 @@ class ScanReader:
             if between is not None and abs(between - grasp.opening) <= _WIDTH_PLAY:
                 grasps.append(Grasp(T, grasp.opening, quality=grasp.quality))
         wide, rated = found.counts["too_wide"], len(grasps)
-        grasps = self._closing.held(shapes, grasps)
+        grasps = self._closing.met(shapes, grasps)
         if not found.grasps:
             reasons[name] = found.summary()
         elif rated and not grasps:

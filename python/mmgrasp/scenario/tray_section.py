@@ -181,9 +181,12 @@ def _check_openings(listed: Listed, name: str, shapes: list[LinkShape], gripper:
 
 
 def _check_fingers_meet(listed: Listed, name: str, shapes: list[LinkShape], closing: ClosingHand) -> None:
-    """Refuses grasps at which the closing fingers do not meet the part, by the rule of `verify`."""
-    meet = closing.meets(shapes, [grasp for _, grasp in listed])
-    for (entry, _), meets in zip(listed, meet, strict=True):
+    """Refuses grasps at which the closing fingers do not meet the part, or stand in it, by the rules of `verify`."""
+    grasps = [grasp for _, grasp in listed]
+    meet, fit = closing.meets(shapes, grasps), closing.fits(shapes, grasps)
+    for (entry, _), meets, fits in zip(listed, meet, fit, strict=True):
+        if not fits:
+            entry.fail(f"does not hold part type {name}: it is wider beside the pads, fingers would stand in it")
         if not meets:
             entry.fail(
                 f"does not hold part type {name}: fingers do not meet it from both sides, closing from its "
@@ -432,7 +435,8 @@ def _check_graspable(name: str, kind: PartType, grasps: list[Grasp], gripper: Ha
     if kind.not_met:
         kind.node.fail(
             f"part {name} has no grasp: in none of {kind.not_met} do fingers meet it from both sides, closing from its "
-            f"width as far as they may ({CLOSING_PLAY}): it is thinner than the gap that they leave, or their faces stand too far back"
+            f"width as far as they may ({CLOSING_PLAY}): it is thinner than the gap that they leave, their "
+            "faces stand too far back, or it is wider beside the pads, where fingers would stand in it"
         )
     if kind.too_wide:
         kind.node.fail(

@@ -82,7 +82,7 @@ class Physics:
     scene_friction: float = 0.3
     """Coefficient of scene and floor; parts may have more of their own."""
     grip_force: float = 40.0
-    """Largest force at a fingertip [N]."""
+    """Largest force at a fingertip, in the mean of those that one drive moves [N]."""
     base_force: float = 300.0
     """Largest force of the wheels on the base [N]."""
     base_torque: float = 100.0
@@ -158,7 +158,9 @@ class _Builder:
             physics.rolling.check(self.robot)
         self.meshes = 0
         self.root = ET.Element("mujoco", model=self.robot.name or "robot")
-        ET.SubElement(self.root, "compiler", angle="radian", autolimits="true", inertiafromgeom="auto")
+        ET.SubElement(
+            self.root, "compiler", angle="radian", autolimits="true", inertiafromgeom="auto", balanceinertia="true"
+        )
         ET.SubElement(self.root, "size", memory="128M")  # parts of many convex pieces touch in hundreds of points
         option = ET.SubElement(
             self.root, "option", timestep=_text(physics.time_step), gravity=_text(physics.gravity), cone="elliptic",

@@ -22,4 +22,11 @@ MMGRASP_EXPORT std::vector<bool> fingers_meet(const JointGroup& arm, const Hand&
                                               const std::vector<LinkShape>& part, const std::vector<Grasp>& grasps,
                                               double mesh_tolerance = 0);
 
+/// Tells of each grasp of a part whether its finger links keep out of the part until they are as near as its opening
+/// says, or verify::grip_play() on either side of it: where a part is wider beside the pads than between them, fingers
+/// would stand in it. Arguments and errors as fingers_meet().
+MMGRASP_EXPORT std::vector<bool> fingers_fit(const JointGroup& arm, const Hand& hand,
+                                             const std::vector<LinkShape>& part, const std::vector<Grasp>& grasps,
+                                             double mesh_tolerance = 0);
+
 }  // namespace mmgrasp

@@ -118,6 +118,9 @@ struct CheckedPads {
 /// it, whichever is more, for collision shapes may stand back from the pads that the width is meant for.
 MMGRASP_EXPORT double narrowest_grip(double width);
 
+/// How far beside a part of this width pads and fingers may be that hold it [m]: 1.5 mm or a twentieth of it.
+MMGRASP_EXPORT double grip_play(double width);
+
 /// What is wrong with the seal of the cups at the grasp, which face along `approach` (unit, tool frame): the rims of
 /// all must have the part's surface before them, no farther than max_gap, and what they enclose must be covered by it,
 /// no deeper than their radius; empty: they seal. By FCL, with needles of those lengths.

@@ -124,7 +124,7 @@ std::string hand_advice(const PartSupplyProblem& problem, PartRef ref, int too_w
   if (problem.gripper.suction) return text;
   if (problem.trays[ref.tray].parts[ref.part].grasps_sampled)
     text += " (a standoff in grasp_options holds parts with the tips of the pads: up to " +
-            metres(problem.gripper.finger_depth / 2) + ")";
+            advised_metres(advised_below(problem.gripper.finger_depth / 2)) + ")";
   text += " (gripper opens to " + metres(problem.gripper.max_opening);
   return text + (too_wide > 0 ? ", " + std::to_string(too_wide) + " grasps were too wide)" : ")");
 }

@@ -37,6 +37,15 @@ class ClosingHand {
     };
     return meets_at(-slack) && meets_at(slack);
   }
+  /// Whether no finger link is in the part where the pads are still `play` off it on either side.
+  bool fits(const Grasp& grasp, double slack, double play) {
+    CollisionChecker& checker = at_opening(std::min(grasp.opening + 2 * play, hand_.max_opening));
+    const auto touches_at = [&](double beside) {
+      checker.set_root(grasp.T_object_hand * Eigen::Translation3d(beside * hand_.closing) * T_tool_root_);
+      return sides_touching(checker) > 0;
+    };
+    return !touches_at(-slack) && !touches_at(slack);
+  }
 
  private:
   bool meets_from(const Pose& T_part_tool, double opening) {
@@ -45,7 +54,7 @@ class ClosingHand {
     for (int i = 0; i <= kSteps; ++i) {  // The farther they are closed, the more fingers meet, for most parts.
       CollisionChecker& checker = at_opening(narrowest + (opening - narrowest) * i / kSteps);
       checker.set_root(T_world_root);
-      if (both_sides_touch(checker)) return true;
+      if (sides_touching(checker) == 2) return true;
     }
     return false;
   }
@@ -87,12 +96,12 @@ class ClosingHand {
     }
     for (const auto& [finger, at] : place) side_[finger] = at > (low + high) / 2;
   }
-  bool both_sides_touch(CollisionChecker& checker) const {
+  int sides_touching(CollisionChecker& checker) const {
     bool touched[2] = {false, false};
     for (const Contact& contact : checker.contacts(q_)) {
       if (const auto found = side_.find(contact.a); found != side_.end()) touched[found->second] = true;
     }
-    return touched[0] && touched[1];
+    return touched[0] + touched[1];
   }
 
   const Hand& hand_;
@@ -117,20 +126,36 @@ void check_grasps(const JointGroup& arm, const Hand& hand, const std::vector<Gra
   }
 }
 
-}  // namespace
-
-std::vector<bool> fingers_meet(const JointGroup& arm, const Hand& hand, const std::vector<LinkShape>& part,
-                               const std::vector<Grasp>& grasps, double mesh_tolerance) {
+/// Asks of each grasp by a hand with fingers; those of cups are fine.
+template <typename Ask>
+std::vector<bool> asked(const JointGroup& arm, const Hand& hand, const std::vector<LinkShape>& part,
+                        const std::vector<Grasp>& grasps, double mesh_tolerance, const Ask& ask) {
   if (hand.suction) return std::vector<bool>(grasps.size(), true);
   check_grasps(arm, hand, grasps, mesh_tolerance);
   if (grasps.empty()) return {};
   ClosingHand closing(arm, hand, part);
-  std::vector<bool> meet;
+  std::vector<bool> answers;
   for (const Grasp& grasp : grasps) {
     detail::throw_if_interrupted();
-    meet.push_back(closing.meets(grasp, kGraspSlack + mesh_tolerance));
+    answers.push_back(ask(closing, grasp));
   }
-  return meet;
+  return answers;
+}
+
+}  // namespace
+
+std::vector<bool> fingers_meet(const JointGroup& arm, const Hand& hand, const std::vector<LinkShape>& part,
+                               const std::vector<Grasp>& grasps, double mesh_tolerance) {
+  return asked(arm, hand, part, grasps, mesh_tolerance, [&](ClosingHand& closing, const Grasp& grasp) {
+    return closing.meets(grasp, kGraspSlack + mesh_tolerance);
+  });
+}
+
+std::vector<bool> fingers_fit(const JointGroup& arm, const Hand& hand, const std::vector<LinkShape>& part,
+                              const std::vector<Grasp>& grasps, double mesh_tolerance) {
+  return asked(arm, hand, part, grasps, mesh_tolerance, [&](ClosingHand& closing, const Grasp& grasp) {
+    return closing.fits(grasp, kGraspSlack, verify::grip_play(grasp.opening) + mesh_tolerance);
+  });
 }
 
 }  // namespace mmgrasp

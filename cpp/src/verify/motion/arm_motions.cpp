@@ -172,6 +172,7 @@ class PickCheck {
     judge_.hold(body_, T_tip_part_);
     if (plan_.suction.cups.empty()) {
       hand_.check_grip(at_grasp, grasp_->opening, context_.pick_name(index_));
+      if (!part_->scanned) hand_.check_room(at_grasp, grasp_->opening, 0, context_.pick_name(index_));
     } else {
       const Eigen::Vector3d centre = T_tip_part_ * centre_of_mass(part_->body.shapes);
       for (const int kind : {kLift, kTransfer})

@@ -166,6 +166,7 @@ class DriveByCheck {
       if (t >= drive_by_.closed_at) {
         held_ = true;
         hand_.check_grip(arm(q), width_, where);
+        if (!part_->scanned) hand_.check_room(arm(q), width_, kStill, where);
       }
     }
     return !hand_.collides(arm(q), opening(t), where);

@@ -12,8 +12,6 @@ namespace {
 constexpr double kThickness = 1e-3;  // Thickness of a pad [m]: more than a step, so that it passes through nothing.
 constexpr double kStep = 5e-4;       // A pad comes in by such steps [m].
 constexpr int kHalvings = 12;        // How often the last step is halved.
-constexpr double kPlay = 1.5e-3;     // How far a pad may be off the part [m],
-constexpr double kShare = 0.05;      // or this share of the part's width.
 
 CheckedPads pads_of(const PlanToCheck& plan) {
   return {plan.approach, plan.closing, plan.max_opening, plan.finger_depth, plan.finger_width, plan.clearance};
@@ -119,7 +117,7 @@ namespace mmgrasp::verify {
 
 std::string pads_unlike_grasp(const CheckedPads& pads, const std::vector<LinkShape>& part, const CheckedGrasp& grasp) {
   const detail::PlacedBody body = detail::place_body("part", part, Pose::Identity());
-  const double half = 0.5 * grasp.opening, play = std::max(detail::kPlay, detail::kShare * grasp.opening);
+  const double half = 0.5 * grasp.opening, play = grip_play(grasp.opening);
   const double before = std::min(half + pads.clearance, 0.5 * pads.max_opening);
   const double from = std::max(half + play, before - detail::kThickness);
   const detail::Pad pad(pads, body, grasp.T_object_hand);

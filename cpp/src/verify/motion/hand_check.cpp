@@ -10,6 +10,8 @@ namespace {
 
 constexpr double kGripPlay = 0.01;   // Fingers may close this far below a grasp's width to meet the part [m],
 constexpr double kGripShare = 0.25;  // or this share of it.
+constexpr double kPlay = 1.5e-3;     // How far a pad or finger may be off the part [m],
+constexpr double kShare = 0.05;      // or this share of the part's width.
 
 }  // namespace
 
@@ -49,9 +51,21 @@ void HandCheck::check_grip(const Eigen::VectorXd& arm, double width, const std::
                          (most == 0 ? "no finger touches the part" : "fingers of only one side touch the part")});
 }
 
+void HandCheck::check_room(const Eigen::VectorXd& arm, double width, double moved, const std::string& where) {
+  const double before = std::min(width + 2 * (grip_play(width) + moved), context_.plan.max_opening);
+  if (judge_.sides_touching_attached(arm, before) == 0) return;
+  faults_.push_back({"grasp-fingers", where,
+                     "fingers meet the part when they are still " + text(before) + " m apart, the grasp says " +
+                         text(width) + " m: they would stand in the part"});
+}
+
 }  // namespace mmgrasp::verify::detail
 
 namespace mmgrasp::verify {
+
+double grip_play(double width) {
+  return std::max(detail::kPlay, detail::kShare * width);
+}
 
 double narrowest_grip(double width) {
   return std::max(0.0, width - std::max(detail::kGripPlay, detail::kGripShare * width));

@@ -18,6 +18,9 @@ class HandCheck {
   /// "grasp-empty": fingers of both sides must meet the attached part at once, at the grasp's width or somewhat below:
   /// collision shapes may stand back a little from the pads that the width is meant for. Otherwise nothing is held.
   void check_grip(const Eigen::VectorXd& arm, double width, const std::string& where);
+  /// "grasp-fingers": no finger link meets the attached part before the fingers are as near as its width between the
+  /// pads says, or grip_play() on either side of it; the hand may be `moved` off the grasp [m].
+  void check_room(const Eigen::VectorXd& arm, double width, double moved, const std::string& where);
 
  private:
   const Context& context_;

@@ -279,6 +279,7 @@ bool Judge::link_comes_near(int link, const PlacedBody& body, double margin) con
 
 void Judge::find_sides(const Eigen::VectorXd& arm) {
   place(arm, stage_->setup.openings.back());
+  --queries_;  // of no motion: each thread would count its own
   const Pose T_tip_world = tip(arm).inverse(Eigen::Isometry);
   std::map<int, double> along;
   for (const int link : solid_links_) {

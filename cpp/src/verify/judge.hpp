@@ -99,7 +99,7 @@ class Judge {
   Pose T_world_root_ = Pose::Identity();
   std::vector<bool> present_;
   std::vector<std::size_t> near_;   ///< Bodies within the robot's reach of the base.
-  std::map<int, bool> side_;        ///< Of each finger link; found when first asked for.
+  std::map<int, bool> side_;        ///< On which side each finger link is; found when first asked for.
   std::vector<Poses> solid_poses_;  ///< [link][solid], world.
   std::vector<std::vector<Bounds>> solid_bounds_;
   std::vector<Bounds> link_bounds_;

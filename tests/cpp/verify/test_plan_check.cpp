@@ -233,12 +233,10 @@ TEST(PlanCheck, ApproachAndLiftAreAsLongAsAsked) {
 
 TEST(PlanCheck, WidthsAreThoseOfTheParts) {
   PlanToCheck plan = good_plan();
-  plan.closing = Eigen::Vector3d::UnitX();
   plan.finger_depth = plan.finger_width = 0.02;
   EXPECT_EQ(codes_of(plan), Codes{});
   for (const double factor : {0.5, 0.85, 1.2}) {
     plan = good_plan();
-    plan.closing = Eigen::Vector3d::UnitX();
     plan.finger_depth = plan.finger_width = 0.02;
     plan.parts[0].grasps[0].opening *= factor;
     EXPECT_TRUE(codes_of(plan).count("grasp-opening")) << factor;
@@ -249,7 +247,6 @@ TEST(PlanCheck, ListedGraspsHoldSomething) {
   // Pads 2 cm deep around the tcp: 2.9 cm above the middle of a cube of 4 cm they still meet it, 3.1 cm above not.
   for (const double above : {0.029, 0.031}) {
     PlanToCheck plan = good_plan();
-    plan.closing = Eigen::Vector3d::UnitX();
     plan.finger_depth = plan.finger_width = 0.02;
     plan.parts[0].grasps[1].T_object_hand = at(0, 0, above);  // no pick uses it
     EXPECT_EQ(codes_of(plan), above > 0.03 ? Codes{"grasp-empty"} : Codes{}) << above;

@@ -109,7 +109,7 @@ class ClosingHand {
   Eigen::VectorXd q_;
   Pose T_tool_root_;
   CollisionChecker checker_;
-  std::map<std::string, bool> side_;         ///< Of each finger link.
+  std::map<std::string, bool> side_;         ///< On which side each finger link is.
   std::map<double, CollisionChecker> kept_;  ///< Openings of the fingers [m] and checkers of them.
 };
 

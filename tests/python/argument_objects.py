@@ -114,6 +114,14 @@ def seven_joint_hand() -> mg.Robot:
     return mg.Robot.load(Path(mg.__file__).parent / "assets" / "grippers" / "sdhlike" / "sdhlike.urdf")
 
 
+def pinching_hand() -> mg.Hand:
+    groups = [("fingers", [f"finger_{k}_{j}" for k in (1, 2) for j in ("proximal", "distal")]), ("spread", ["spread"])]
+    bent = np.array([-0.4, 0.4, -0.4, 0.4, 0.0])
+    return mg.grasping.eigengrasp_hand(
+        seven_joint_hand(), "tcp_pinch", groups, open=bent + [0, 0, 0, 0, 1.57], closed=[0.2, -0.2, 0.2, -0.2, 1.57]
+    )
+
+
 def drive_by_program() -> mg.planning.WholeBodyProgram:
     made = mg.planning.drive_by_program(ARM, start=Q, tasks=[], goal=Q / 2, waypoints=5)
     assert made is not None

@@ -152,6 +152,47 @@ def test_a_round_in_passing_is_verified(kind: str, tmp_path: Path) -> None:
     assert len(content["picks"]) == len(content["drive_by"]["motions"]) == 2
 
 
+@pytest.mark.parametrize(
+    ("boxes", "code"),
+    [
+        ([([0.018, 0.09, 0.07], 0.011, 0.0)], "grasp-empty"),  # met by the thumb alone, or by the two fingers
+        ([([0.018, 0.09, 0.07], -0.011, 0.0)], "grasp-empty"),
+        ([([0.04, 0.09, 0.07], 0.0, 0.0), ([0.05, 0.09, 0.008], 0.0, 0.031)], "grasp-fingers"),  # wider above the middle
+    ],
+)
+def test_verify_sees_what_the_fingers_meet(
+    boxes: list[tuple[list[float], float, float]], code: str, cylindrical: Path, tmp_path: Path
+) -> None:
+    """The part of a plan that holds becomes another one, by its shapes along the closing axis and upwards."""
+    assert mg.verify_plan(cylindrical, samples=20).ok
+    content = json.loads(cylindrical.read_text())
+    part = content["scenario"]["parts"][0]
+    grasp = part["grasps"][content["picks"][0]["grasp"]]["pose"]
+    closing = mg.pose([0, 0, 0], quat_xyzw=grasp["quat_xyzw"])[:3, :3] @ content["scenario"]["gripper"]["closing"]
+    assert np.allclose(np.abs(closing), [1, 0, 0], atol=1e-9)
+    (plain,) = part["shapes"]
+    part["shapes"] = [
+        plain | {"size": size, "pose": plain["pose"] | {"xyz": [along, 0.0, up]}} for size, along, up in boxes
+    ]
+    changed = tmp_path / "plan.json"
+    changed.write_text(json.dumps(content))
+    verdict = mg.verify_plan(changed, samples=20)
+    assert code in {fault.code for fault in verdict.faults}
+
+
+@pytest.fixture(scope="module")
+def cylindrical(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A plan in which thumb and two fingers take a block of 4 cm."""
+    folder = tmp_path_factory.mktemp("cylindrical")
+    raw = with_hand(OMNI, PINCH | {"type": "cylindrical"}, "hand_tcp_cylindrical")
+    block = {"type": "block", "grid": [1, 2], "spacing": [0.09, 0.2]}
+    raw["trays"] = [raw["trays"][0] | {"parts": block, "targets": [0]}]
+    raw["part_types"]["block"] = {"box": [0.04, 0.09, 0.07]}
+    plan = plan_part_supply(mg.load_scenario(written(folder, raw)))
+    assert plan.outcome == mg.Outcome.solved
+    return Path(plan.save(folder / "plan.json"))
+
+
 def test_a_part_beside_one_side_is_not_held(tmp_path: Path) -> None:
     """Two of three fingertips meet the box, 30 mm from the thumb's pad: both are of one side."""
     path = written(tmp_path, with_hand(OMNI, PINCH | {"type": "cylindrical"}, "hand_tcp_cylindrical"))

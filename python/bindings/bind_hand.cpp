@@ -142,6 +142,14 @@ void bind_hand(py::module_& m) {
             return hand;
           },
           py::arg("payload"), "The same hand with another payload [kg], > 0; inf: none is stated.")
+      .def(
+          "with_finger_depth",
+          [](Hand hand, double finger_depth) {
+            hand.finger_depth = finger_depth;
+            hand.check_fingers();
+            return hand;
+          },
+          py::arg("finger_depth"), "The same hand with pads of another length along the approach [m], > 0.")
       .def_readonly("tool_link", &Hand::tool_link, "Link whose frame is the tool frame.")
       .def_readonly("approach", &Hand::approach, "Unit axis of the tool frame along which the hand moves in.")
       .def_readonly("closing", &Hand::closing, "Unit axis of the tool frame along which the pads close.")

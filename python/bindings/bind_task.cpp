@@ -225,6 +225,20 @@ void bind_problem(py::module_& m) {
           "Every keyword option with its value.");
 }
 
+using AskedOfGrasps = std::vector<bool> (*)(const JointGroup&, const Hand&, const std::vector<LinkShape>&,
+                                            const std::vector<Grasp>&, double);
+
+void def_asked_of_grasps(py::module_& m, const char* name, AskedOfGrasps ask, const char* doc) {
+  m.def(
+      name,
+      [ask](const JointGroup& arm, const Hand& hand, const std::vector<LinkShape>& part,
+            const std::vector<Grasp>& grasps, double mesh_tolerance) {
+        return interruptible([&] { return ask(arm, hand, part, grasps, mesh_tolerance); });
+      },
+      py::arg("arm"), py::arg("hand"), py::arg("part"), py::arg("grasps"), py::kw_only(),
+      py::arg("mesh_tolerance") = 0.0, doc);
+}
+
 void bind_picks(py::module_& m) {
   py::class_<PickMotion>(m, "PickMotion", "One timed arm motion at a stop.")
       .def_property_readonly(
@@ -283,14 +297,8 @@ void bind_picks(py::module_& m) {
       "(tray, part) still in place. Returns how it ended and the picks in order; without a solution those that "
       "failed.\n"
       "InvalidInput when the robot at home is not free there.");
-  m.def(
-      "fingers_meet",
-      [](const JointGroup& arm, const Hand& hand, const std::vector<LinkShape>& part, const std::vector<Grasp>& grasps,
-         double mesh_tolerance) {
-        return interruptible([&] { return fingers_meet(arm, hand, part, grasps, mesh_tolerance); });
-      },
-      py::arg("arm"), py::arg("hand"), py::arg("part"), py::arg("grasps"), py::kw_only(),
-      py::arg("mesh_tolerance") = 0.0,
+  def_asked_of_grasps(
+      m, "fingers_meet", &fingers_meet,
       "Tells of each grasp of a part whether finger links of both sides meet the part at once, closing from the\n"
       "grasp's opening by at most 10 mm or a quarter of it, whichever is more, wherever within 0.2 mm along the\n"
       "closing axis the hand stands: a plan's own check asks for that. Fingers that leave a gap when they are closed\n"
@@ -298,14 +306,8 @@ void bind_picks(py::module_& m) {
       "meshes may stick out by `mesh_tolerance` [m] beyond those of the check. Cups have no\n"
       "fingers to close: all True. InvalidInput where its robot lacks a link or joint of the hand, or an opening is\n"
       "beyond the hand's.");
-  m.def(
-      "fingers_fit",
-      [](const JointGroup& arm, const Hand& hand, const std::vector<LinkShape>& part, const std::vector<Grasp>& grasps,
-         double mesh_tolerance) {
-        return interruptible([&] { return fingers_fit(arm, hand, part, grasps, mesh_tolerance); });
-      },
-      py::arg("arm"), py::arg("hand"), py::arg("part"), py::arg("grasps"), py::kw_only(),
-      py::arg("mesh_tolerance") = 0.0,
+  def_asked_of_grasps(
+      m, "fingers_fit", &fingers_fit,
       "Tells of each grasp of a part whether its finger links keep out of the part until they are as near as its\n"
       "opening says, or 1.5 mm or a twentieth of it on either side: where a part is wider beside the pads than "
       "between\n"

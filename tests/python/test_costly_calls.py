@@ -34,7 +34,7 @@ CHEAP = {
         CapabilityMap.slice World.copy World.shapes_of World.pose_of CollisionChecker.clone BeamFrame.split
         """,
     "a closed form of a few numbers": """
-        held_load operation_load _suction_used _straight_approach _ik_seeds_of_a_grasp suction_share Hand.of_cups Hand.with_payload
+        held_load operation_load _suction_used _straight_approach _ik_seeds_of_a_grasp suction_share Hand.of_cups Hand.with_payload Hand.with_finger_depth
         BaseGrid.centre BasePath.duration BaseTracker.command BaseTracker.reset DepthNoise.sigma Gripper.holds Hand.joint_values
         Hand.opening_at Hand.posture_values Hand.pregrasp_opening Hand.share_open LineGrasp.probability LineGrasp.success
         PinholeCamera.project Pipe.grasp centric_grasps closing_outcome drive_arc flat_contact grasp_holding joint_velocity

@@ -157,7 +157,10 @@ def test_a_round_in_passing_is_verified(kind: str, tmp_path: Path) -> None:
     [
         ([([0.018, 0.09, 0.07], 0.011, 0.0)], "grasp-empty"),  # met by the thumb alone, or by the two fingers
         ([([0.018, 0.09, 0.07], -0.011, 0.0)], "grasp-empty"),
-        ([([0.04, 0.09, 0.07], 0.0, 0.0), ([0.05, 0.09, 0.008], 0.0, 0.031)], "grasp-fingers"),  # wider above the middle
+        (
+            [([0.04, 0.09, 0.07], 0.0, 0.0), ([0.05, 0.09, 0.008], 0.0, 0.031)],
+            "grasp-fingers",
+        ),  # wider above the middle
     ],
 )
 def test_verify_sees_what_the_fingers_meet(

@@ -2077,6 +2077,10 @@ class Hand:
         """
         How far open the fingers are at an opening, in [0, 1].
         """
+    def with_finger_depth(self, finger_depth: float) -> Hand:
+        """
+        The same hand with pads of another length along the approach [m], > 0.
+        """
     def with_payload(self, payload: float) -> Hand:
         """
         The same hand with another payload [kg], > 0; inf: none is stated.

@@ -195,10 +195,10 @@ class DriveByPlan:
 def check_in_passing(scenario: Scenario) -> None:
     """Raises InvalidInput for a round of which no part can be taken in passing."""
     sections = scenario.setup.sections
-    assert sections is not None and sections.place_region is not None
     if scenario.setup.gripper.suction is not None:
         sections.gripper["suction"].fail("drive-by needs a hand with fingers, which close in passing")
     if scenario.setup.place_region.capacity:
+        assert sections.place_region is not None  # read_setup() refuses a robot without
         sections.place_region["capacity"].fail("drive-by takes no parts of several trips in passing: leave it out")
     if scenario.drive_clearance:
         raise InvalidInput(

@@ -129,23 +129,7 @@ def _with_whole_tips(hand: Hand, robot: Robot) -> Hand:
         for shape in robot.collisions(link)
     ]
     behind, beyond = min(low for low, _ in ends), max(high for _, high in ends)
-    return Hand(
-        hand.tool_link,
-        approach=hand.approach,
-        closing=hand.closing,
-        kind=hand.kind,
-        min_opening=hand.min_opening,
-        max_opening=hand.max_opening,
-        finger_depth=2 * max(-behind, beyond),
-        finger_width=hand.finger_width,
-        clearance=hand.clearance,
-        joints=hand.joints,
-        openings=hand.openings,
-        preshape=hand.preshape,
-        finger_links=hand.finger_links,
-        body=hand.body,
-        payload=hand.payload,
-    )
+    return hand.with_finger_depth(2 * max(-behind, beyond))
 
 
 def _first_touch(hand: Hand, robot: Robot) -> float:

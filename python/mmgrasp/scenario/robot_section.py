@@ -50,18 +50,17 @@ class RobotSetup:
     place_region: PlaceRegion
     home: np.ndarray
     other_joints: dict[str, float]
+    sections: RobotSections
+    """Where it was read from."""
     closing_speed: float = 0.1
     """How fast the gripper's opening shrinks [m/s] (P1 4.4.1)."""
     mesh_tolerance: float = 0.0
     """The coarsest one of its robots [m]."""
-    sections: RobotSections | None = None
-    """Where it was read from."""
 
     @property
     def rates_all_pads(self) -> bool:
         """The gripper is more than two pads: grasps of a map are sought for its own links."""
-        own = self.sections is not None and has_types(self.sections.gripper)
-        return own or len(self.gripper.groups) > 1
+        return has_types(self.sections.gripper) or len(self.gripper.groups) > 1
 
 
 @dataclass
@@ -184,7 +183,7 @@ def read_setup(sections: RobotSections, progress: Progress = None) -> RobotSetup
         sections.gripper["closing_speed"].number(least=1e-4, most=10) if "closing_speed" in sections.gripper else 0.1
     )
     place_region = _read_place_region(sections.place_region, bin_pose)
-    return RobotSetup(robot, arm, group, gripper, place_region, home, other, speed, _mesh_tolerance(node), sections)
+    return RobotSetup(robot, arm, group, gripper, place_region, home, other, sections, speed, _mesh_tolerance(node))
 
 
 @dataclass

@@ -450,6 +450,41 @@ TEST(ProbabilisticSdf, DistanceFieldTakesItsMargin) {
   EXPECT_THROW(sdf.distance_field(-1), InvalidInput);
 }
 
+/// Many points are sorted by block, fewer are worked on in groups, one is looked up alone: each has the same bits, on
+/// the borders of blocks, where the map ends and far from it, with one layer and with two, carved or not.
+TEST(ProbabilisticSdf, PointsAnswerTheSameHoweverMany) {
+  DepthCamera fine = small_camera(0.0005), biased = small_camera(0.001);
+  biased.name = "biased";
+  biased.systematic = 0.0005;
+  for (const bool two : {false, true}) {
+    ProbabilisticSdf sdf;
+    for (const DepthImage& frame : noisy_sphere_frames(6, fine, 0.05)) sdf.integrate(frame, fine);
+    for (int k = 0; k < 9; ++k) sdf.integrate(wall(two ? biased : fine, 0.3), two ? biased : fine);
+    Matrix3Xd points = random_points(60'000, 0.055);
+    for (int i = 0; i < 3000; ++i) points.col(i) = 0.016 * (points.col(i) / 0.016).array().round().matrix();  // corners
+    for (int i = 3000; i < 6000; ++i) points(i % 3, i) = 0.016 * std::round(points(i % 3, i) / 0.016);        // faces
+    points.col(6000) = Vector3d(1e6, 0, 0);
+    points.col(6001) = Vector3d(0, -1e6, 0);
+    points.col(6002) = Vector3d(0, 0, 8.0 * ((1 << 20) - 8) * 0.002);
+    const SdfValues all = sdf.query(points);
+    int known = 0;
+    const auto expect_same = [&](const SdfValues& part, Eigen::Index first) {
+      for (Eigen::Index i = 0; i < part.mean.size(); ++i) {
+        ASSERT_EQ(part.known[i], all.known[first + i]) << two << " " << first + i;
+        if (!part.known[i]) continue;
+        ++known;
+        ASSERT_EQ(part.mean[i], all.mean[first + i]) << two << " " << first + i;
+        ASSERT_EQ(part.sigma[i], all.sigma[first + i]) << two << " " << first + i;
+      }
+    };
+    for (Eigen::Index first = 0; first < points.cols(); first += 100)
+      expect_same(sdf.query(points.middleCols(first, 100)), first);
+    for (Eigen::Index i = 0; i < points.cols(); i += 7) expect_same(sdf.query(points.col(i)), i);
+    EXPECT_GT(known, 5000);
+    EXPECT_FALSE(all.known[6000] || all.known[6001] || all.known[6002]);
+  }
+}
+
 TEST(ProbabilisticSdf, EmptyMapsAnswer) {
   const ProbabilisticSdf sdf;
   EXPECT_FALSE(sdf.query(Vector3d(0, 0, 0)).known[0]);

@@ -19,6 +19,27 @@ class BlockNeighbours {
     key_ = key;
     known_ = 0;
   }
+  /// Looks up those of a set of bits in three steps, so that what each reads of many points is fetched at once.
+  void fetch_slots(unsigned set) const {
+    for_each(set, [&](int which) { grid_.table.fetch(key_of(which).packed()); });
+  }
+  void find_blocks(unsigned set) {
+    for_each(set, [&](int which) {
+      index_[which] = grid_.find(key_of(which));
+      if (index_[which] < 0) return;
+      for (const auto& layer : grid_.layers) fetch(&layer[index_[which]]);
+    });
+  }
+  void find_voxels(unsigned set) {
+    for_each(set, [&](int which) { voxels_[which] = voxels_of(index_[which]); });
+    known_ |= set;
+  }
+  /// Calls visit(which) for each bit of a set.
+  template <typename Visit>
+  static void for_each(unsigned set, const Visit& visit) {
+    for (; set != 0; set &= set - 1) visit(__builtin_ctz(set));
+  }
+
   /// Block beyond the entered one along x, y, z by the bits of `which`; negative: the grid has none.
   int index(int which) {
     if (!(known_ >> which & 1)) look_up(which);
@@ -31,10 +52,14 @@ class BlockNeighbours {
   }
 
  private:
+  BlockKey key_of(int which) const { return {key_.x + (which & 1), key_.y + (which >> 1 & 1), key_.z + (which >> 2)}; }
+  const VoxelBlock* voxels_of(int index) const {
+    return single_ && index >= 0 ? grid_.layers[0][index].get() : nullptr;
+  }
   void look_up(int which) {
     known_ |= 1u << which;
-    index_[which] = grid_.find({key_.x + (which & 1), key_.y + (which >> 1 & 1), key_.z + (which >> 2)});
-    voxels_[which] = single_ && index_[which] >= 0 ? grid_.layers[0][index_[which]].get() : nullptr;
+    index_[which] = grid_.find(key_of(which));
+    voxels_[which] = voxels_of(index_[which]);
   }
 
   const SdfGrid& grid_;

@@ -24,6 +24,12 @@ inline int floor_of(double value) {
   return towards_zero - (value < towards_zero);
 }
 
+/// Has the cache fetch what is read soon: many such loads are under way at once. A load, since processors drop
+/// prefetches while many are under way, and compilers drop functions that do nothing but prefetch.
+inline void fetch(const void* at) {
+  static_cast<void>(*static_cast<const volatile char*>(at));
+}
+
 /// Place of a block: its first voxel is 8 times this, voxel i lies at i * SdfOptions::voxel.
 struct BlockKey {
   int x = 0, y = 0, z = 0;
@@ -70,6 +76,10 @@ class KeyTable {
       if (slot.value < 0) return -1;
       if (slot.key == key) return slot.value;
     }
+  }
+  /// Has the cache fetch what find() will read first.
+  void fetch(std::uint64_t key) const {
+    if (!slots_.empty()) detail::fetch(&slots_[hash(key) & mask_]);
   }
   /// The value that is there, or `value`, now there.
   int insert(std::uint64_t key, int value);

@@ -27,6 +27,20 @@ struct Sample {
   bool known = false;
 };
 
+/// A cell, named by its lowest voxel, and where in it, from 0 to 1.
+struct PlaceInCell {
+  std::array<int, 3> cell;
+  float t[3];
+
+  BlockKey block() const { return {cell[0] >> 3, cell[1] >> 3, cell[2] >> 3}; }
+  /// Which neighbours of its block (as bits) hold corners of the cell.
+  unsigned neighbours() const {
+    unsigned set = 1;
+    for (int k = 0; k < 3; ++k) set |= (cell[k] & 7) == 7 ? set << (1 << k) : 0;
+    return set;
+  }
+};
+
 /// Not for several threads at once: it remembers the last blocks.
 class SdfSampler {
  public:
@@ -83,29 +97,16 @@ class SdfSampler {
 
   /// The block of the voxel below a point along each axis; negative: there is none.
   int block_at(const Eigen::Vector3d& point) {
-    const Eigen::Vector3d g = point * scale_;
-    if (!(g.cwiseAbs().maxCoeff() < 8.0 * kMostBlocks)) return -1;
-    return find({floor_of(g.x()) >> 3, floor_of(g.y()) >> 3, floor_of(g.z()) >> 3});
-  }
-
-  /// Fetches what at() will read of this point.
-  void prefetch(const Eigen::Vector3d& point) {
-    const int block = block_at(point);
-    if (block < 0) return;
-    const int y = floor_of(point.y() * scale_), z = floor_of(point.z() * scale_);
-    for (const auto& layer : grid_.layers) {
-      if (!layer[block]) continue;
-      const int row = ((z & 7) << 3) + (y & 7);
-      for (const int each : {row, row + 1, row + 8, row + 9}) __builtin_prefetch(layer[block]->rows[each & 63]);
-    }
+    PlaceInCell place;
+    return find_cell(point, place) ? find(place.block()) : -1;
   }
 
   /// Means at the corners of a cell that are all known, its lowest corner the voxel with these indices; corner k lies
   /// beyond it along x, y, z by the bits of k.
   void corners(int x, int y, int z, float* mean) {
-    around_cell_.enter({x >> 3, y >> 3, z >> 3});
     kept_cell_ = {x, y, z};
-    kept_corners_ = near_surface(kept_cell_, kept_mean_, kept_weight_);
+    around_cell_.enter({x >> 3, y >> 3, z >> 3});
+    kept_corners_ = near_surface(kept_cell_, around_cell_, kept_mean_, kept_weight_);
     if (kept_corners_ == Corners::near) {
       for (int k = 0; k < 8; ++k) mean[k] = kept_mean_[k];
       return;
@@ -113,7 +114,7 @@ class SdfSampler {
     Node corner[8];
     bool near = false;
     for (int k = 0; k < 8; ++k) {
-      corner[k] = corner_node(x, y, z, k);
+      corner[k] = corner_node(kept_cell_, around_cell_, k);
       near = near || corner[k].seen == Seen::surface;
     }
     if (near) bound_free_corners(corner);
@@ -121,43 +122,62 @@ class SdfSampler {
   }
 
   Sample at(const Eigen::Vector3d& point) {
-    const Eigen::Vector3d g = point * scale_;
-    constexpr double kFarthest = 8.0 * kMostBlocks;
-    if (!(g.cwiseAbs().maxCoeff() < kFarthest)) return {};
-    int cell[3];
-    float t[3];
-    split(g, cell, t);
-    around_cell_.enter({cell[0] >> 3, cell[1] >> 3, cell[2] >> 3});
-    const int block = around_cell_.index(0);
-    const std::array<float, 3> correlation = block >= 0 ? grid_.correlation[block] : std::array<float, 3>{1, 1, 1};
-    CellValues mean, weight;
-    Corners corners = Corners::near;
-    if (kept_corners_ == Corners::near && std::equal(cell, cell + 3, kept_cell_.begin())) {
-      mean = kept_mean_;
-      weight = kept_weight_;
-    } else {
-      corners = near_surface({cell[0], cell[1], cell[2]}, mean, weight);
+    PlaceInCell place;
+    if (!find_cell(point, place)) return {};
+    around_cell_.enter(place.block());
+    if (kept_corners_ == Corners::near && place.cell == kept_cell_) {
+      return between(place, around_cell_, kept_mean_, kept_weight_);
     }
-    switch (corners) {
+    return at(place, around_cell_);
+  }
+
+  /// Whether a point is near enough to the origin to lie in a cell, and where.
+  bool find_cell(const Eigen::Vector3d& point, PlaceInCell& out) const {
+    const Eigen::Vector3d g = point * scale_;
+    if (!(g.cwiseAbs().maxCoeff() < 8.0 * kMostBlocks)) return false;
+    split(g, out.cell.data(), out.t);
+    return true;
+  }
+
+  /// The map at a place whose cell's block was entered.
+  Sample at(const PlaceInCell& place, BlockNeighbours& around) const {
+    CellValues mean, weight;
+    switch (near_surface(place.cell, around, mean, weight)) {
       case Corners::unknown:
         return {};
-      case Corners::near: {
-        const CellValues variance{1 / weight.low, 1 / weight.high};
-        const float shared = systematic_ ? systematic_variance(cell, t) : 0;
-        return {trilinear(mean, t), trilinear(variance, t) * kept(t, correlation) + shared, true};
-      }
+      case Corners::near:
+        return between(place, around, mean, weight);
       case Corners::mixed:
         break;
     }
     Node corner[8];
     bool near = false;
     for (int k = 0; k < 8; ++k) {
-      corner[k] = corner_node(cell[0], cell[1], cell[2], k);
+      corner[k] = corner_node(place.cell, around, k);
       if (corner[k].seen == Seen::nothing) return {};
       near = near || corner[k].seen == Seen::surface;
     }
     if (near) bound_free_corners(corner);
-    return interpolate(corner, t, correlation);
+    return interpolate(corner, place.t, correlation_of(around));
+  }
+
+  /// Fetches the voxels that at() reads at a place whose neighbours `set` were found.
+  void fetch_voxels(const PlaceInCell& place, unsigned set, BlockNeighbours& around) const {
+    const int y = place.cell[1], z = place.cell[2];
+    if (around.index(0) >= 0) fetch(&grid_.correlation[around.index(0)]);
+    BlockNeighbours::for_each(set, [&](int which) {
+      if (around.index(which) < 0) return;
+      for (const auto& layer : grid_.layers) {
+        const VoxelBlock* const voxels = layer[around.index(which)].get();
+        if (!voxels) continue;
+        fetch(&voxels->looked_through);
+        for (const int w : {z, z + 1}) {
+          for (const int v : {y, y + 1}) fetch(voxels->rows[voxel_of(0, v, w) >> 3]);
+          fetch(voxels->near + voxel_of(0, y, w));
+          fetch(voxels->free + voxel_of(0, y, w));
+        }
+      }
+    });
   }
 
   /// Gradient of the mean by central differences over a voxel each way, a unit vector; zero where that leaves the
@@ -232,21 +252,36 @@ class SdfSampler {
   }
 
   /// Corner k of the cell; the block of its lowest corner was entered.
-  Node corner_node(int x, int y, int z, int k) {
-    const int block = around_cell_.index(block_of(x, y, z, k));
+  Node corner_node(const std::array<int, 3>& cell, BlockNeighbours& around, int k) const {
+    const int x = cell[0], y = cell[1], z = cell[2], block = around.index(block_of(x, y, z, k));
     if (block < 0) return {};
     return node(block, voxel_of(x + (k & 1), y + (k >> 1 & 1), z + (k >> 2)));
+  }
+
+  std::array<float, 3> correlation_of(BlockNeighbours& around) const {
+    const int block = around.index(0);
+    return block >= 0 ? grid_.correlation[block] : std::array<float, 3>{1, 1, 1};
+  }
+
+  /// Interpolates where all corners are near a surface of the only layer.
+  Sample between(const PlaceInCell& place, BlockNeighbours& around, const CellValues& mean,
+                 const CellValues& weight) const {
+    const CellValues variance{1 / weight.low, 1 / weight.high};
+    const float shared = systematic_ ? systematic_variance(place, around) : 0;
+    return {trilinear(mean, place.t), trilinear(variance, place.t) * kept(place.t, correlation_of(around)) + shared,
+            true};
   }
 
   enum class Corners : std::uint8_t { unknown, near, mixed };
 
   /// Means and weights of a cell's corners where all are near a surface of the only layer; mixed: ask for the nodes.
   /// The block of its lowest corner was entered.
-  Corners near_surface(const std::array<int, 3>& cell, CellValues& mean, CellValues& weight) {
+  Corners near_surface(const std::array<int, 3>& cell, BlockNeighbours& around, CellValues& mean,
+                       CellValues& weight) const {
     if (grid_.layers.size() != 1) return Corners::mixed;
     const int x = cell[0] & 7, y = cell[1] & 7, z = cell[2] & 7;
     const bool inside = x < 7 && y < 7 && z < 7;
-    const VoxelBlock* const first = around_cell_.voxels(0);
+    const VoxelBlock* const first = around.voxels(0);
     if (!first) return Corners::unknown;
     bool looked_through = first->looked_through;
     // Pairs along x share a row, or cross into the next block.
@@ -256,8 +291,8 @@ class SdfSampler {
       const VoxelBlock *here = first, *beside = first;
       if (!inside) {
         const int beyond = (v >> 3) << 1 | (w >> 3) << 2;
-        here = around_cell_.voxels(beyond);
-        beside = x < 7 ? here : around_cell_.voxels(beyond | 1);
+        here = around.voxels(beyond);
+        beside = x < 7 ? here : around.voxels(beyond | 1);
         if (!here || !beside) return Corners::unknown;
         looked_through = looked_through || here->looked_through || beside->looked_through;
       }
@@ -274,20 +309,20 @@ class SdfSampler {
     if (!all_positive(least_of(weight.low, weight.high))) return Corners::unknown;
     for (int k = 0; looked_through && k < 8; ++k) {
       if (!(mean[k] < 0)) continue;
-      const VoxelBlock& voxels = inside ? *first : *around_cell_.voxels(block_of(x, y, z, k));
+      const VoxelBlock& voxels = inside ? *first : *around.voxels(block_of(x, y, z, k));
       if (voxels.carved(voxel_of(x + (k & 1), y + (k >> 1 & 1), z + (k >> 2)))) return Corners::mixed;
     }
     return Corners::near;
   }
 
   /// The systematic variance of the only layer, between the blocks of a cell's corners.
-  float systematic_variance(const int* cell, const float* t) {
+  float systematic_variance(const PlaceInCell& place, BlockNeighbours& around) const {
     CellValues shared;
     for (int k = 0; k < 8; ++k) {
-      const VoxelBlock* const block = around_cell_.voxels(block_of(cell[0], cell[1], cell[2], k));
+      const VoxelBlock* const block = around.voxels(block_of(place.cell[0], place.cell[1], place.cell[2], k));
       shared.set(k, block->systematic_variance());
     }
-    return trilinear(shared, t);
+    return trilinear(shared, place.t);
   }
 
   /// The common case of direction(): one layer, all voxels around near a surface. Each is read once.

@@ -40,8 +40,10 @@ double sigma_at(SdfSampler& sampler, const Eigen::Vector3d& hit, const Eigen::Ve
   return std::sqrt(sample.variance);
 }
 
-/// Fetches what is read and written of a ray. Inlined, since GCC removes calls of functions that do nothing but prefetch.
-[[gnu::always_inline]] inline void prefetch(const Eigen::Matrix3Xd& origins, const Eigen::Matrix3Xd& directions, Eigen::Index i, const SdfHits& out) {
+/// Fetches what is read and written of a ray. Inlined, since GCC removes calls of functions that do nothing but
+/// prefetch.
+[[gnu::always_inline]] inline void prefetch(const Eigen::Matrix3Xd& origins, const Eigen::Matrix3Xd& directions,
+                                            Eigen::Index i, const SdfHits& out) {
   const auto* const point = out.point.data() + 3 * i;
   const auto* const normal = out.normal.data() + 3 * i;
   const void* const all[] = {

@@ -124,8 +124,8 @@ struct Query {
     }
   }
 
-  /// Has the memory fetch a position cell's tables (their first lines) while another one is worked on. Inlined, since GCC
-  /// removes calls of functions that do nothing but prefetch.
+  /// Has the memory fetch a position cell's tables (their first lines) while another one is worked on. Inlined, since
+  /// GCC removes calls of functions that do nothing but prefetch.
   [[gnu::always_inline]] void ask_for(const PositionCell& position) const {
     constexpr std::uint32_t kLine = 16, kLines = 8;
     const std::uint32_t begin = data.position_first[position.index];

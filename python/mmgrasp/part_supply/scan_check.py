@@ -5,6 +5,7 @@ The bodies of a plan are boxes made from values of the map's field; here its mes
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -17,9 +18,14 @@ from ..documents.reading import Node
 from ..scenario.map_bodies import inside_boxes, large_pieces
 from ..scenario.scan_section import tolerance
 from ..scenario.shapes import shape_from_node
+from .fingertip_pads import Fingertips, Pad, two_pads
 
 _MOST_OFF = 0.1
 """A probability may differ by so much from the one found here: pads meet edges, and the part's middle is that of its boxes."""
+_TRIPLES = 100
+"""Planes through three points that are tried on what a pad meets."""
+_FEWER = 0.15
+"""Fewer of a pad's hits, as a share, than the search asked for may lie on a plane here: the pose differs a little."""
 _MOST_WIDER = 0.004  # and so may the width from the distance of what the pads meet [m]
 
 
@@ -99,6 +105,7 @@ def _improbable(root: Node, scan: Node, sdf: ProbabilisticSdf) -> list[checks.Fa
     """Picked grasps whose probability or width is not what the map says."""
     parts = {node["name"].raw: node for node in root["scenario"]["parts"].elements()}
     faults = []
+    tips = Fingertips(root["scenario"]) if "fingertips" in scan and scan["fingertips"].boolean() else None
     for number, pick in enumerate(root["picks"].elements()):
         if pick["tray"].raw != scan["tray"].raw or pick["part"].raw not in parts:
             continue  # another tray, or a fault that is said elsewhere
@@ -111,7 +118,7 @@ def _improbable(root: Node, scan: Node, sdf: ProbabilisticSdf) -> list[checks.Fa
             faults.append(checks.Fault("grasp-probability", where, "its grasp of a scanned part has no probability"))
             continue
         claimed, width = grasp["probability"].number(least=0), grasp["opening"].number(least=0)
-        found = _pads(root, scan, part, grasp, sdf)
+        found = _rated(root, scan, part, grasp, sdf, tips)
         if found is None:
             faults.append(
                 checks.Fault("grasp-probability", where, "its pads meet no surface of the map, or slip on it")
@@ -130,51 +137,107 @@ def _improbable(root: Node, scan: Node, sdf: ProbabilisticSdf) -> list[checks.Fa
     return faults
 
 
-def _pads(root: Node, scan: Node, part: Node, grasp: Node, sdf: ProbabilisticSdf) -> tuple[float, float, float] | None:
+def _rated(
+    root: Node, scan: Node, part: Node, grasp: Node, sdf: ProbabilisticSdf, tips: Fingertips | None
+) -> tuple[float, float, float] | None:
     """(4.9) of P3 with the criteria of docs/methods/grasp.md, what is between the surfaces that the pads meet, and how far their middle is from the hand's [m]."""
     gripper = root["scenario"]["gripper"]
     options = {key: default for key, (default, _) in _core._synthesis_option_table().items()}
     options |= dict(scan["grasp_options"].raw)
     T_world_part = part["pose"].pose()
     T = T_world_part @ grasp["pose"].pose()
-    approach, closing = (np.array(gripper[key].numbers(3)) for key in ("approach", "closing"))
     clearance = gripper["clearance"].number(least=0)
     wide = min(grasp["opening"].number() + 2 * clearance, gripper["max_opening"].number())
-    n = int(options["rays"])
-    steps = (np.arange(n) + 0.5) / n - 0.5
-    u, v = np.meshgrid(
-        steps * gripper["finger_depth"].number(), steps * gripper["finger_width"].number(), indexing="ij"
-    )
-    pad = u.reshape(-1, 1) * approach + v.reshape(-1, 1) * np.cross(approach, closing)
-    patches = []
-    for side in (1.0, -1.0):
-        origins = (pad + side * wide / 2 * closing) @ T[:3, :3].T + T[:3, 3]
-        push = T[:3, :3] @ (-side * closing)
-        hits = sdf.cast_rays(origins, np.tile(push, (len(origins), 1)))
-        met = np.asarray(hits.hit, dtype=bool) & (np.nan_to_num(np.asarray(hits.distance), nan=np.inf) <= wide)
-        if met.mean() < options["min_hits"]:
-            return None
-        points, sigma, distance = (np.asarray(a)[met] for a in (hits.point, hits.sigma, hits.distance))
-        own = np.abs(distance - np.median(distance)) <= 3 * options["plane_tolerance"]
-        normal = np.linalg.svd(points[own] - points[own].mean(axis=0))[2][2]
-        near = np.abs((points - points[own].mean(axis=0)) @ normal) <= options["plane_tolerance"]
-        normal = np.linalg.svd(points[near] - points[near].mean(axis=0))[2][2]
-        beta = np.arccos(min(1.0, abs(float(normal @ push))))
-        patches.append((points[near].mean(axis=0), beta, float(distance[near].mean()), float(sigma[near].mean())))
-    (a, beta_a, d_a, sigma_a), (b, beta_b, d_b, sigma_b) = patches
+    pads = two_pads(gripper, wide) if tips is None else tips.pads(wide)
+    met = _patches(sdf, pads, T, wide, options)
+    if tips is not None and met:
+        # The search has the planes, not the first points, `clearance` away.
+        wide -= 2 * (float(np.mean([patch.distance for patch in met])) - clearance)
+        pads = tips.pads(wide)
+        met = _patches(sdf, pads, T, wide, options)
+    if not met:
+        return None
     cone = np.arctan(options["friction"])
-    angle = max(0.0, 1 - beta_a / cone) * max(0.0, 1 - beta_b / cone)
-    sure = max(0.0, 1 - sigma_a / options["max_sigma"]) * max(0.0, 1 - sigma_b / options["max_sigma"])
+    angle = float(np.prod([max(0.0, 1 - patch.slant / cone) for patch in met]))
+    sure = float(np.prod([max(0.0, 1 - patch.sigma / options["max_sigma"]) for patch in met]))
     if angle <= 0 or sure <= 0:
         return None
-    placement = np.exp(-(abs(d_a - clearance) + abs(d_b - clearance)) / options["placement_scale"])
+    placement = np.exp(-sum(abs(patch.distance - clearance) for patch in met) / options["placement_scale"])
+    # Pads of one side count as one, at their mean.
+    closing = np.array(gripper["closing"].numbers(3))
+    sides = [
+        [q for pad, q in zip(pads, met, strict=True) if (pad.push @ closing < 0) == side] for side in (True, False)
+    ]
+    if not all(sides):
+        return None
+    a, b = (np.mean([patch.middle for patch in side], axis=0) for side in sides)
+    # Fingertips that move together stop at what they meet first; two flat pads at a face.
+    d_a, d_b = (float(np.mean([q.nearest for q in side])) for side in sides)
     bounds = [LinkShape(s.shape, T_world_part @ s.pose).bounds for s in _body(part)[0]]
     low, high = np.min([x for x, _ in bounds], axis=0), np.max([x for _, x in bounds], axis=0)
     off = np.linalg.norm(np.cross((low + high) / 2 - a, b - a)) / np.linalg.norm(b - a)
     centring = max(0.0, 1 - off / ((high - low).max() / 2))
     weights = [options[f"{key}_weight"] for key in ("angle", "placement", "centring", "certainty")]
-    return (
-        float(np.dot(weights, [angle, placement, centring, sure])),
-        float(wide - d_a - d_b),
-        float(abs(d_a - d_b) / 2),
+    return float(np.dot(weights, [angle, placement, centring, sure])), wide - d_a - d_b, abs(d_a - d_b) / 2
+
+
+@dataclass(frozen=True)
+class _Patch:
+    """What the rays of a pad meet."""
+
+    middle: np.ndarray
+    slant: float
+    """The angle of the surface to the pad [rad]."""
+    distance: float
+    """How far the plane is [m]."""
+    nearest: float
+    """How far the first point is [m]."""
+    sigma: float
+
+
+def _patches(
+    sdf: ProbabilisticSdf, pads: list[Pad], T_world_hand: np.ndarray, reach: float, options: dict[str, float]
+) -> list[_Patch]:
+    """What each pad meets; empty where one meets too little."""
+    patches = [_patch(sdf, pad, T_world_hand, reach, options) for pad in pads]
+    return [patch for patch in patches if patch is not None] if None not in patches else []
+
+
+def _patch(
+    sdf: ProbabilisticSdf, pad: Pad, T_world_hand: np.ndarray, reach: float, options: dict[str, float]
+) -> _Patch | None:
+    origins = pad.grid(int(options["rays"])) @ T_world_hand[:3, :3].T + T_world_hand[:3, 3]
+    push = T_world_hand[:3, :3] @ pad.push
+    hits = sdf.cast_rays(origins, np.tile(push, (len(origins), 1)))
+    met = np.asarray(hits.hit, dtype=bool) & (np.nan_to_num(np.asarray(hits.distance), nan=np.inf) <= reach)
+    if met.mean() < options["min_hits"] or met.sum() < 3:
+        return None
+    points, sigma, distance = (np.asarray(a)[met] for a in (hits.point, hits.sigma, hits.distance))
+    near = _on_plane(points, options["plane_tolerance"])
+    if near.mean() < options["min_inliers"] - _FEWER or near.sum() < 3:
+        return None
+    normal = _normal(points[near])
+    slant = float(np.arccos(min(1.0, abs(float(normal @ push)))))
+    return _Patch(
+        points[near].mean(axis=0), slant, float(distance[near].mean()), float(distance.min()), float(sigma[near].mean())
     )
+
+
+def _on_plane(points: np.ndarray, tolerance: float) -> np.ndarray:
+    """Which points lie within `tolerance` of the plane that holds most: theirs, or one through three of them."""
+    normals, through = [_normal(points)], [points.mean(axis=0)]
+    rng = np.random.default_rng(1)  # the same answer each time
+    for a, b, c in (points[rng.choice(len(points), 3, replace=False)] for _ in range(_TRIPLES)):
+        across = np.cross(b - a, c - a)
+        if (area := np.linalg.norm(across)) > 1e-9:
+            normals.append(across / area)
+            through.append(a)
+    off = np.abs(np.einsum("kni,ki->kn", points - np.array(through)[:, None], np.array(normals)))
+    best = np.asarray((off <= tolerance)[np.argmax((off <= tolerance).sum(axis=1))])
+    again = np.abs((points - points[best].mean(axis=0)) @ _normal(points[best])) <= tolerance
+    return again if again.sum() >= best.sum() else best
+
+
+def _normal(points: np.ndarray) -> np.ndarray:
+    """The normal of the least squares plane."""
+    return np.asarray(np.linalg.svd(points - points.mean(axis=0))[2][2])

@@ -39,6 +39,8 @@ class TrayScan:
     map_file: Path
     sigmas: float
     grasp_options: dict[str, Any]
+    fingertips: bool = False
+    """Whether grasps were rated with a pad on each fingertip of a hand of many joints, not with two in its middle."""
 
     def to_dict(self, tray: str) -> dict[str, Any]:
         """An entry of a plan's `scenario.scans`."""
@@ -49,6 +51,7 @@ class TrayScan:
             "sha256": sha256_of(path),
             "sigmas": self.sigmas,
             "grasp_options": self.grasp_options,
+            **({"fingertips": True} if self.fingertips else {}),
         }
 
 
@@ -129,7 +132,7 @@ class ScanReader:
                 (node["grasp_options"] if options else named).fail(str(error))
             made.bodies.append((part.shapes, part.T_world_part))
             parts.append(part)
-        return parts, TrayScan(made.folder / MAP, sigmas, options), reasons
+        return parts, TrayScan(made.folder / MAP, sigmas, options, self._closing.robot is not None), reasons
 
     def rest(self, known: list[tuple[list[LinkShape], np.ndarray]]) -> list[tuple[str, list[LinkShape]]]:
         """For each map a name and boxes in the world: cells around its surface, as far as `sigmas` standard deviations, where that

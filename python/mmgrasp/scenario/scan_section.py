@@ -25,6 +25,9 @@ from .map_bodies import Footprint, cell_boxes, cells_around, edge_for, inside_bo
 SIGMAS = 2.0
 SAMPLES, MOST_GRASPS = 800, 40
 """Options of synthesize_grasps for each part: base regions want more grasps to choose from than one arm at one place."""
+_FROM_THE_SIDE, _ROUND, _MORE = {"max_tilt": 1.6}, {"plane_tolerance": 0.004}, {"samples": 3000}
+_HELPS = (_FROM_THE_SIDE, _ROUND, _FROM_THE_SIDE | _ROUND, _FROM_THE_SIDE | _ROUND | _MORE)
+"""Options that are tried for a part without a grasp, to say which help."""
 _WIDTH_PLAY = 0.0025  # pads on the part's columns and on the map's mean may differ by so much [m]
 _MOST_RENDERED = {"views": 500, "distance": 2.0, "noise": 0.02, "seed": 1_000_000}
 _PAD = 0.0005  # half the side of these pads [m]
@@ -89,8 +92,8 @@ class ScanReader:
         wall: float,
         gap: float,
         typed: Callable[[Node], list[LinkShape]],
-    ) -> tuple[list[Part], TrayScan, dict[str, str]]:
-        """The parts of a tray, none of them a target yet, and of those without a grasp the reason. `typed(node)` gives the
+    ) -> tuple[list[Part], TrayScan, dict[str, Callable[[], str]]]:
+        """The parts of a tray, none of them a target yet, and of those without a grasp what says why. `typed(node)` gives the
         shapes in the tray's frame that a rendered map shows."""
         options: dict[str, Any] = {}
         if isinstance(node.raw, dict):
@@ -114,7 +117,7 @@ class ScanReader:
             )
         footprints = [Footprint(thing.T_tray_box, thing.size) for thing in inside]
         parts: list[Part] = []
-        reasons: dict[str, str] = {}
+        reasons: dict[str, Callable[[], str]] = {}
         for k, thing in enumerate(inside):
             if self._progress:
                 self._progress("grasps of what was scanned", k / len(inside))
@@ -204,8 +207,28 @@ class ScanReader:
         shapes: list[LinkShape],
         T_world_part: np.ndarray,
         options: dict[str, Any],
-        reasons: dict[str, str],
+        reasons: dict[str, Callable[[], str]],
     ) -> Part:
+        found, rated, grasps = self._sought(made, thing, shapes, T_world_part, options)
+        if not grasps:
+            if not found.grasps:
+                reason = found.summary()
+            elif rated:
+                reason = f"in none of {rated} grasps do fingers meet it from both sides, closing as far as they may ({CLOSING_PLAY})"
+            else:
+                reason = f"in all {len(found.grasps)} grasps the pads would meet an edge"
+            reasons[name] = lambda: reason + self._advice(made, thing, shapes, T_world_part, options)
+        return Part(name, shapes, T_world_part, grasps, target=False, grasps_too_wide=found.counts["too_wide"])
+
+    def _sought(
+        self,
+        made: _LoadedMap,
+        thing: TrayObject,
+        shapes: list[LinkShape],
+        T_world_part: np.ndarray,
+        options: dict[str, Any],
+    ) -> tuple[_core.GraspSynthesis, int, list[Grasp]]:
+        """What was found, how many of its openings are those of the part's boxes, and those of them at which fingers meet it."""
         given = {"samples": SAMPLES, "max_grasps": MOST_GRASPS} | options
         table, room = float(T_world_part[2, 3]), thing.bounds + [[-_ROOM], [_ROOM]]
         found = _core.synthesize_grasps(
@@ -219,17 +242,24 @@ class ScanReader:
             between = width_between(shapes, T, self._closing.hand)
             if between is not None and abs(between - grasp.opening) <= _WIDTH_PLAY:
                 grasps.append(Grasp(T, grasp.opening, quality=grasp.quality))
-        wide, rated = found.counts["too_wide"], len(grasps)
-        grasps = self._closing.met(shapes, grasps)
-        if not found.grasps:
-            reasons[name] = found.summary()
-        elif rated and not grasps:
-            reasons[name] = (
-                f"in none of {rated} grasps do fingers meet it from both sides, closing as far as they may ({CLOSING_PLAY})"
-            )
-        elif not grasps:
-            reasons[name] = f"in all {len(found.grasps)} grasps the pads would meet an edge"
-        return Part(name, shapes, T_world_part, grasps, target=False, grasps_too_wide=wide)
+        return found, len(grasps), self._closing.met(shapes, grasps)
+
+    def _advice(
+        self,
+        made: _LoadedMap,
+        thing: TrayObject,
+        shapes: list[LinkShape],
+        T_world_part: np.ndarray,
+        options: dict[str, Any],
+    ) -> str:
+        """Which options would give the part grasps, tried."""
+        usual = {key: default for key, (default, _) in _core._synthesis_option_table().items()} | options
+        tried = [{key: value for key, value in more.items() if value > usual[key]} for more in _HELPS]
+        for more in [more for k, more in enumerate(tried) if more and more not in tried[:k]]:
+            if grasps := self._sought(made, thing, shapes, T_world_part, options | more)[2]:
+                said = ", ".join(f"{key}: {value:g}" for key, value in (options | more).items())
+                return f"; with grasp_options: {{{said}}} it has {len(grasps)}"
+        return ""
 
 
 def moved(shape: LinkShape, T: np.ndarray) -> LinkShape:

@@ -261,7 +261,7 @@ def _scanned(
             where = (
                 f"; targets may leave it out ({', '.join(p.name for p in found if p.grasps) or 'no part has a grasp'})"
             )
-            node["scan"].fail(f"part {part.name} has no grasp: {reasons[part.name]}{where}")
+            node["scan"].fail(f"part {part.name} has no grasp: {reasons[part.name]()}{where}")
     parts = [
         Part(
             part.name,

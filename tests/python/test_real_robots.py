@@ -15,7 +15,8 @@ DATA = Path(__file__).parents[2].parent / "shared" / "data"
 
 @pytest.mark.skipif(not DATA.exists(), reason="the robots' files (../shared/data) are not here")
 @pytest.mark.parametrize(
-    ("name", "trays", "most_stops"), [("tiago_2f85", 3, 2), ("ur10e_ridgeback", 3, 2), ("ur10e_sdhlike", 3, 2)]
+    ("name", "trays", "most_stops"),
+    [("tiago_2f85", 3, 2), ("ur10e_ridgeback", 3, 2), ("ur10e_sdhlike", 3, 2), ("ur10e_sdhlike_cans", 1, 1)],
 )
 def test_main_job_is_planned_and_holds(name: str, trays: Any, most_stops: Any, tmp_path: Path) -> None:
     plan = mg.plan_part_supply(SCENARIOS / f"{name}.yaml")

@@ -100,12 +100,23 @@ def test_verify_rates_by_the_pads_of_the_fingertips(content: dict[str, Any]) -> 
     assert "grasp-probability" in faults(content, two_pads)
 
 
-def test_a_finger_link_without_a_pad_is_told(content: dict[str, Any]) -> None:
-    for link, said in (("hand_palm", "must have a shape and move"), ("no such", "the robot has no such link")):
-        changed = copy.deepcopy(content)
-        changed["scenario"]["gripper"]["finger_links"][0] = link
-        with pytest.raises(mg.InvalidInput, match=rf"gripper.finger_links\[0\].*{said}"):
-            mg.verify_plan(changed, samples=10)
+@pytest.mark.parametrize(
+    ("key", "value", "said"),
+    [
+        ("finger_links", ["hand_palm", "hand_thumb_tip"], r"finger_links\[0\].*must have a shape and move"),
+        ("finger_links", ["hand_thumb_tip", "no such"], r"finger_links\[1\].*the robot has no such link"),
+        ("tool_link", "no such", "tool_link.*the robot has no such link"),
+        ("openings", None, "openings is missing"),
+    ],
+)
+def test_a_hand_without_such_pads_is_told(key: str, value: Any, said: str, content: dict[str, Any]) -> None:
+    changed = copy.deepcopy(content)
+    gripper = changed["scenario"]["gripper"]
+    del gripper[key]
+    if value is not None:
+        gripper[key] = value
+    with pytest.raises(mg.InvalidInput, match=said):
+        mg.verify_plan(changed, samples=10)
 
 
 @pytest.mark.skipif(mujoco is None, reason="MuJoCo is not installed (pip install 'mmgrasp[sim]')")

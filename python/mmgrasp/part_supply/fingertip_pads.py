@@ -53,6 +53,8 @@ class Fingertips:
         stored, gripper = scenario["robot"], scenario["gripper"]
         self._robot = Robot.from_strings(stored["urdf"].string(), base=stored["base"].string())
         self._tool = gripper["tool_link"].string()
+        if self._tool not in self._robot.links:
+            gripper["tool_link"].fail("the robot has no such link")
         self._joints = {
             j["name"].string(): (j["closed"].number(), j["open"].number()) for j in gripper["joints"].elements()
         }

@@ -16,7 +16,7 @@ from .._core import verify as checks
 from .._files import sha256_of
 from ..documents.reading import Node
 from ..scenario.map_bodies import inside_boxes, large_pieces
-from ..scenario.scan_section import tolerance
+from ..scenario.scan_section import synthesis_options, tolerance
 from ..scenario.shapes import shape_from_node
 from .fingertip_pads import Fingertips, Pad, two_pads
 
@@ -143,7 +143,7 @@ def _rated(
     """(4.9) of P3 with the criteria of docs/methods/grasp.md, what is between the surfaces that the pads meet, and how far their middle is from the hand's [m]."""
     gripper = root["scenario"]["gripper"]
     options = {key: default for key, (default, _) in _core._synthesis_option_table().items()}
-    options |= dict(scan["grasp_options"].raw)
+    options |= synthesis_options(scan["grasp_options"])
     T_world_part = part["pose"].pose()
     T = T_world_part @ grasp["pose"].pose()
     clearance = gripper["clearance"].number(least=0)

@@ -101,7 +101,7 @@ class ScanReader:
             if ("map" in node) == ("rendered" in node):
                 node.fail("must have either map or rendered")
             sigmas = node["sigmas"].number(least=0) if "sigmas" in node else SIGMAS
-            options = _synthesis_options(node["grasp_options"]) if "grasp_options" in node else {}
+            options = synthesis_options(node["grasp_options"]) if "grasp_options" in node else {}
             if "map" in node:
                 named, folder = node["map"], self._find(node["map"])
             else:
@@ -291,7 +291,8 @@ def width_between(shapes: list[LinkShape], T_part_hand: np.ndarray, gripper: Han
     return float(high - low) if high > low else None
 
 
-def _synthesis_options(node: Node) -> dict[str, Any]:
+def synthesis_options(node: Node) -> dict[str, Any]:
+    """The key `grasp_options` of a scanned tray, every value within its bounds."""
     table = {k: v for k, v in _core._synthesis_option_table().items() if k != "threads"}
     bounds = _core._synthesis_option_bounds()
     options: dict[str, Any] = {}

@@ -320,6 +320,7 @@ def test_a_scanned_tray_is_emptied(tmp_path: Path) -> None:
         ({"name": "none.yaml"}, "hand_tcp_pinch", r"none.yaml': no such file"),
         ({"prefix": "han_"}, "hand_tcp_pinch", "no movable joint han_thumb_proximal.*did you mean hand_thumb"),
         ({"clearance": -0.001}, "hand_tcp_pinch", "gripper.clearance = -0.001"),
+        ({"clearance": 0.2}, "hand_tcp_pinch", "gripper.clearance = 0.2: must be at most 0.05453 m"),
         ({"payload": 0}, "hand_tcp_pinch", "gripper.payload"),
         ({"finger_depth": 0.02}, "hand_tcp_pinch", "finger_depth"),
     ],

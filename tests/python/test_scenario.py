@@ -59,6 +59,8 @@ BAD = [
     ("gripper.approach", [1, 1, 0], ["gripper.approach", "unit"]),
     ("gripper.closing", [1, 0, 0], ["gripper.closing", "orthogonal"]),
     ("gripper.max_opening", 0, ["gripper.max_opening", "> 0"]),
+    ("gripper.clearance", 0.051, ["gripper.clearance = 0.051", "at most 0.05 m", "half of what the gripper opens by"]),
+    ("gripper", {"from_robot": True, "clearance": 0.3}, ["gripper.clearance = 0.3", "at most 0.05 m"]),
     ("gripper.joints.0.name", "finger", ["gripper.joints[0]", "finger"]),
     ("gripper.joints.0.open", 5.0, ["gripper.joints[0].open", "5.0"]),
     ("gripper.finger_links", ["thumb"], ["gripper.finger_links[0]", "thumb"]),
@@ -404,6 +406,20 @@ def test_parts_larger_than_the_bin_are_told(
         caplog.clear()
         mg.load_scenario(write(edited(small, "place_region.size", size)))
         assert ("is 30 x 50 mm, larger than place_region.size" in caplog.text) == told, (size, caplog.text)
+
+
+def test_a_clearance_that_no_grasp_of_a_part_gets_is_told(
+    small: dict[str, Any], write: Callable[..., Path], caplog: pytest.LogCaptureFixture
+) -> None:
+    """The narrowest grasps of the bracket are 30 mm wide: of an opening of 100 mm 35 mm are left on either side."""
+    for clearance, told in ((0.035, False), (0.036, True)):
+        caplog.clear()
+        path = write(edited(small, "gripper.clearance", clearance))
+        mg.load_scenario(path)
+        line = next(i for i, text in enumerate(path.read_text().splitlines(), 1) if "clearance" in text)
+        said = [text for text in caplog.messages if text.startswith(f"{path}:{line}: gripper.clearance: ")]
+        assert bool(said) == told, caplog.messages
+        assert all(f"{clearance} m is more than bracket gets" in text and "with 0.035 m" in text for text in said)
 
 
 def test_only_listed_grasps_are_all_that_there_are(small: dict[str, Any], write: Callable[..., Path]) -> None:

@@ -10,6 +10,7 @@ import numpy as np
 
 from .._core import Hand, HandJoint, InvalidInput, Mesh, Robot
 from ..documents.reading import Node
+from .clearance import check_clearance
 from .grasp_types import CLEARANCE, TypesSection, read_grasp_types, read_hand_of_type
 from .named_files import find_file, profile_path, read_profile
 from .robot_names import check_link, joint_value
@@ -18,6 +19,13 @@ from .suction_section import read_cups
 
 def read_hand(node: Node, robot: Robot, tool_link: str) -> Hand:
     """The hand of the section `gripper`: fingers, suction cups, or what is found on the robot."""
+    hand = _read_hand(node, robot, tool_link)
+    with _blame(node):
+        check_clearance(clearance_key(node), [hand])
+    return hand
+
+
+def _read_hand(node: Node, robot: Robot, tool_link: str) -> Hand:
     payload = node["payload"].number(above=0) if "payload" in node else math.inf
     if "suction" in node:
         node.mapping("approach suction cup_links", "payload")
@@ -74,7 +82,17 @@ def has_types(node: Node) -> bool:
 def read_types(node: Node, robot: Robot, tool_link: str) -> dict[str, Hand]:
     """The hands of such a section by type, each group of joints closing by itself; one where the section chooses it."""
     with _blame(node):
-        return read_grasp_types(_types_section(node), robot, tool_link)
+        hands = read_grasp_types(_types_section(node), robot, tool_link)
+        check_clearance(clearance_key(node), hands.values())
+    return hands
+
+
+def clearance_key(node: Node) -> Node | None:
+    """Where the section, or the profile that it names, states the clearance; None: nowhere."""
+    for section in (node, _profile_of(node["name"])) if "name" in node else (node,):
+        if "clearance" in section:
+            return section["clearance"]
+    return None
 
 
 def _types_section(node: Node) -> TypesSection:

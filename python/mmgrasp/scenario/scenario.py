@@ -20,8 +20,10 @@ from .._progress import Progress
 from .._reach_cache import cached_database
 from ..documents.reading import RENAMED, Node, read_yaml
 from . import cell_bodies, drawn_bodies, floor_map
+from .clearance import warn_of_little_room
 from .contact_rules import ContactRules, read_contact_rules
 from .grid_size import check_grid_size
+from .gripper_section import clearance_key
 from .held_grasps import ClosingHand
 from .named_files import find_file
 from .part_type import PartType
@@ -189,6 +191,7 @@ def _read_scenario(
     scans = ScanReader(closing, _in_world(obstacles), find_file, progress)
     trays = _read_trays(root, types, setup, scans)
     _warn_of_a_small_bin(trays, types, setup.place_region.size)
+    warn_of_little_room(clearance_key(setup.sections.gripper) or setup.sections.gripper, setup.gripper, trays)
     check_grid_size(root, trays, {key: value for key, (value, _) in _core._supply_option_table().items()} | options)
     for tray in trays:
         obstacles.append(Obstacle(f"tray {tray.tray.name}", tray.tray.T_world_tray, tray.walls))

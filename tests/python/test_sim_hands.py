@@ -152,3 +152,42 @@ def test_a_held_part_creeps_as_is_said(step: float) -> None:
     scene.drive(Follow(["turn", "up", "down"], [angle, lambda t: 0.0, lambda t: 0.0], end + 0.05, 0.002), [Radius()])
     speed = (radii[end] - radii[begin]) / (end - begin)
     assert speed == pytest.approx(step * omega**2 * (radii[end] + radii[begin]) / 2, rel=0.1)
+
+
+ONE_DRIVE = """<robot name="one_drive">
+  <link name="palm"/>
+  <joint name="drive" type="DRIVE"><parent link="palm"/><child link="upper"/><axis xyz="AXIS"/>
+    <origin xyz="0 HALF 0"/><limit lower="-1" upper="1" velocity="1" effort="100"/></joint>
+  <link name="upper"><collision><origin xyz="REACH 0.005 0"/><geometry><box size="0.02 0.01 0.04"/></geometry></collision></link>
+  <joint name="other" type="DRIVE"><parent link="palm"/><child link="lower"/><axis xyz="AXIS"/>
+    <origin xyz="0 -HALF 0"/><limit lower="-1" upper="1" velocity="1" effort="100"/><mimic joint="drive" multiplier="-1"/></joint>
+  <link name="lower"><collision><origin xyz="REACH -0.005 0"/><geometry><box size="0.02 0.01 0.04"/></geometry></collision></link>
+</robot>"""
+
+
+@pytest.mark.parametrize("force", [15.0, 40.0])
+@pytest.mark.parametrize("turning", [False, True])
+def test_both_tips_of_one_drive_press_with_the_grip_force(turning: bool, force: float) -> None:
+    """The other finger follows by a mimic joint: the drive's force is that of both tips, and the part stays in the middle."""
+    kind, axis, reach = ("revolute", "0 0 1", 0.1) if turning else ("prismatic", "0 1 0", 0.0)
+    urdf = ONE_DRIVE
+    for word, text in (("DRIVE", kind), ("AXIS", axis), ("HALF", "0.015"), ("REACH", str(reach))):
+        urdf = urdf.replace(word, text)
+    robot = mg.Robot.from_strings(urdf)
+    opened = 0.01 / reach if turning else 0.01
+    hand = mg.Hand(
+        "palm", approach=[1, 0, 0], closing=[0, 1, 0], max_opening=0.02, finger_depth=0.02, finger_width=0.04,
+        joints=[HandJoint("drive", -opened, opened)], finger_links=["upper", "lower"],
+    )  # fmt: skip
+    part = sim.SimPart("cube", [mg.LinkShape(mg.Box([0.03, 0.03, 0.03]))], mg.pose([reach, 0, 0]), mass=0.1)
+    physics = sim.Physics(grip_force=force, gravity=(0.0, 0.0, 0.0))
+    scene = sim.SimScene(robot, mg.World(), [part], gripper=hand, physics=physics)
+    scene.reset(np.zeros(3), {"drive": 0.1 * opened})
+    assert scene.contact_forces() == {}  # the other finger stands where the drive asks, not in the part
+    scene.drive(Follow(["drive"], [lambda t: -opened], 1.0, 0.002))
+    forces = scene.contact_forces()
+    for tip in ("upper", "lower"):
+        assert forces["cube", tip] == pytest.approx(force, rel=0.03)
+    assert abs(scene.part_pose("cube")[1, 3]) < 1e-3
+    drives = finger_drives(robot, hand)
+    assert drives["drive"].limit(force) == pytest.approx(2 * force * (reach or 1.0), rel=0.01)

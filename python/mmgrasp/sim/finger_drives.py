@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from .._core import Hand, Robot
 from ..scenario.gripper_section import middle_of
+
+TOGETHER = "0.004 1"  # joints that one drive moves keep together so firmly (solref)
 
 
 @dataclass(frozen=True)
@@ -18,14 +20,16 @@ class FingerDrive:
     """The tip's way for one of the joint's, all joints going as the opening says [m/m or m/rad]."""
     sharing: int = 1
     """Joints that push the same tip."""
+    followed: tuple[FingerDrive, ...] = ()
+    """How it pushes other tips, each through a joint that follows it (`mimic`)."""
 
     def limit(self, force: float) -> float:
-        """The joint's largest force for this one at the tip [N] -> [N or N m]."""
-        return force * self.reach / self.sharing
+        """The joint's largest force for this one at each tip [N] -> [N or N m]."""
+        return force * self.reach / self.sharing + sum(other.limit(force) for other in self.followed)
 
     def stiffness(self, at_tip: float) -> float:
-        """The joint's stiffness for this one at the tip [N/m] -> [N/m or N m/rad]."""
-        return at_tip * self.reach**2 / self.sharing
+        """The joint's stiffness for this one at each tip [N/m] -> [N/m or N m/rad]."""
+        return at_tip * self.reach**2 / self.sharing + sum(other.stiffness(at_tip) for other in self.followed)
 
 
 def finger_drives(robot: Robot, hand: Hand) -> dict[str, FingerDrive]:
@@ -38,17 +42,34 @@ def finger_drives(robot: Robot, hand: Hand) -> dict[str, FingerDrive]:
         to_tool = np.linalg.inv(poses[hand.tool_link])
         places.append({link: (to_tool @ poses[link] @ middle_of(robot, link))[:3] for link in hand.finger_links})
     way = {link: float(np.linalg.norm(places[1][link] - places[0][link])) for link in hand.finger_links}
+    leader = {name: j["mimic"] or name for name, j in table.items()}
     carrying = {link: _joints_before(robot, link) for link in hand.finger_links}
     moving = {name for name in before if abs(after[name] - before[name]) > 1e-12}
+    sharing = {link: len({leader[name] for name in carrying[link]} & moving) for link in hand.finger_links}
     drives = {}
     for joint in hand.joints:
-        pushed = [link for link in hand.finger_links if joint.name in carrying[link]]
-        if joint.name not in moving or not pushed or table[joint.name]["type"] == "prismatic":
-            drives[joint.name] = FingerDrive()
-            continue
-        reach = max(way[link] for link in pushed) / abs(after[joint.name] - before[joint.name])
-        drives[joint.name] = FingerDrive(reach, max(len(carrying[link] & moving) for link in pushed))
+        pushes = []
+        for name, pushed in _tips_pushed(joint.name, leader, carrying) if joint.name in moving else []:
+            if name == joint.name and table[name]["type"] == "prismatic":
+                pushes.append(FingerDrive())
+                continue
+            reach = max(way[link] for link in pushed) / abs(after[joint.name] - before[joint.name])
+            pushes.append(FingerDrive(reach, max(sharing[link] for link in pushed)))
+        first, *others = pushes or [FingerDrive()]
+        drives[joint.name] = replace(first, followed=tuple(others))
     return drives
+
+
+def _tips_pushed(drive: str, leader: dict[str, str], carrying: dict[str, set[str]]) -> list[tuple[str, list[str]]]:
+    """The joint, and those that follow it, each with the tips that it carries, every tip once: with the joint itself or the follower nearest the root."""
+    out, known = [], set[str]()
+    carried = {name: [link for link in carrying if name in carrying[link]] for name in leader if leader[name] == drive}
+    for name in sorted(carried, key=lambda name: (name != drive, -len(carried[name]))):
+        new = [link for link in carried[name] if link not in known]
+        known.update(new)
+        if new:
+            out.append((name, new))
+    return out
 
 
 def finger_sides(robot: Robot, hand: Hand) -> list[set[str]]:

@@ -31,7 +31,7 @@ from .._core import (
     World,
 )
 from ..bodies import SceneBodies
-from .finger_drives import FingerDrive, finger_drives
+from .finger_drives import TOGETHER, FingerDrive, finger_drives
 from .rolling import BASE_JOINTS, CASTER_RADIUS, ROOT_JOINT, TYRES, RollingBase
 
 ROBOT, SCENE, PART, FLOOR, WHEEL = 1, 2, 4, 8, 16
@@ -240,7 +240,7 @@ class _Builder:
                 limit = self.physics.base_torque if name.endswith("theta") else self.physics.base_force
                 ET.SubElement(actuators, "velocity", name=name, joint=name, kv="1", forcerange=_text((-limit, limit)))
         for name, (first, line) in self.coupled.items():
-            ET.SubElement(equality, "joint", joint1=name, joint2=first, polycoef=line, solref="0.004 1")
+            ET.SubElement(equality, "joint", joint1=name, joint2=first, polycoef=line, solref=TOGETHER)
         if len(equality):
             self.root.append(equality)
         self.root.append(actuators)
@@ -266,7 +266,9 @@ class _Builder:
         mimic = joint.find("mimic")
         if mimic is not None:
             line = f"{mimic.get('offset', '0')} {mimic.get('multiplier', '1')} 0 0 0"
-            ET.SubElement(equality, "joint", joint1=name, joint2=_attribute(mimic, "joint"), polycoef=line)
+            made = ET.SubElement(equality, "joint", joint1=name, joint2=_attribute(mimic, "joint"), polycoef=line)
+            if _attribute(mimic, "joint") in self.fingers:
+                made.set("solref", TOGETHER)
             return
         force = float(limit.get("effort", "0")) if limit is not None else 0.0
         if name in self.fingers:

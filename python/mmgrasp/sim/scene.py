@@ -106,10 +106,20 @@ class SimScene:
         self.mujoco.mj_resetData(self.model, self.data)
         for name, value in joints.items():
             self.data.qpos[self.address[name]] = value
+        self._place_followers()
         if self.base is not None:
             self.base.place(at, self.data)
         self.mujoco.mj_forward(self.model, self.data)
         self._tune()
+
+    def _place_followers(self) -> None:
+        """Joints that follow another one (`mimic`) stand where that one asks."""
+        model = self.model
+        for kind, first, second, line in zip(
+            model.eq_type, model.eq_obj1id, model.eq_obj2id, model.eq_data, strict=True
+        ):
+            if kind == self.mujoco.mjtEq.mjEQ_JOINT and second >= 0 and model.joint(first).name not in self.address:
+                self.data.qpos[model.jnt_qposadr[first]] = line[0] + line[1] * self.data.qpos[model.jnt_qposadr[second]]
 
     def drive(
         self,

@@ -327,6 +327,22 @@ def test_a_hand_may_be_read_from_the_robot(small: dict[str, Any], write: Callabl
     assert {j.name for j in hand.joints} == {j.name for j in by_hand.joints}
 
 
+def test_a_profile_by_its_path_is_sought_beside_the_scenario(
+    small: dict[str, Any], write: Callable[..., Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    profile = {"format": "mmgrasp-robot", "version": 3}
+    profile |= {key: small[key] for key in ("robot", "gripper", "place_region")}
+    raw = {key: value for key, value in small.items() if key not in ("gripper", "place_region")}
+    path = write(edited({**raw, "robot": {}}, "robot.name", "robots/mine.yaml"))
+    with pytest.raises(mg.InvalidInput, match=rf"scenario\.yaml:\d+: robot\.name = .*: no such file .{path.parent}"):
+        mg.load_scenario(path)
+    (path.parent / "robots").mkdir()
+    (path.parent / "robots" / "mine.yaml").write_text(yaml.safe_dump(profile))
+    own = mg.load_scenario(path).setup
+    assert own.gripper.finger_links == mg.load_scenario(write(small)).setup.gripper.finger_links
+
+
 @pytest.mark.parametrize("name", sorted(p.name for p in (ASSETS / "scenarios").glob("*.yaml")))
 def test_shipped_scenarios_keep_the_schema(name: str) -> None:
     schema = json.loads((ASSETS.parent / "schemas" / "scenario.schema.json").read_text())

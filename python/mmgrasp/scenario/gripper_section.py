@@ -12,7 +12,7 @@ from .._core import Hand, HandJoint, InvalidInput, Mesh, Robot
 from ..documents.reading import Node
 from .clearance import check_clearance
 from .grasp_types import CLEARANCE, TypesSection, read_grasp_types, read_hand_of_type
-from .named_files import find_file, profile_path, read_profile
+from .named_files import find_profile, read_profile
 from .robot_names import check_link, joint_value
 from .suction_section import read_cups
 
@@ -126,10 +126,7 @@ def _types_section(node: Node) -> TypesSection:
 
 def _profile_of(name: Node) -> Node:
     """The section `gripper` of the profile of this name, or in this file."""
-    text = name.string()
-    with name.blamed():
-        path = find_file(name) if text.endswith((".yaml", ".yml")) else profile_path(text, ("grippers", "robots"))
-    return read_profile(path)["gripper"]
+    return read_profile(find_profile(name, ("grippers", "robots")))["gripper"]
 
 
 def _blame(node: Node) -> contextlib.AbstractContextManager[None]:

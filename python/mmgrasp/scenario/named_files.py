@@ -54,6 +54,13 @@ def profile_path(name: str, folders: tuple[str, ...] = ("robots",)) -> Path:
     return known[name]
 
 
+def find_profile(node: Node, folders: tuple[str, ...] = ("robots",)) -> Path:
+    """The profile that a file names: by the name of one shipped in these folders, or by a path as in find_file()."""
+    name = node.string()
+    with node.blamed():
+        return find_file(node) if name.endswith((".yaml", ".yml")) else profile_path(name, folders)
+
+
 def read_profile(path: Path) -> Node:
     """The top of a robot profile, its header and keys checked."""
     return check_profile(read_yaml(path).root)

@@ -23,7 +23,7 @@ from ..documents.reading import Node, near_miss, read_yaml
 from .closed_fingers import fingers_may_meet, held_links_may_meet
 from .grasp_types import HandTypes, opened
 from .gripper_section import check_finger_travel, has_types, read_hand, read_types
-from .named_files import check_profile, find_file, profile_path
+from .named_files import check_profile, find_file, find_profile, profile_path
 from .robot_names import check_link, joint_value
 from .shapes import read_shapes
 from .wheels import limits_of_wheels
@@ -93,9 +93,7 @@ def _named_profile(own: Node) -> RobotSections | None:
     if "name" not in own:
         return None
     own.mapping("name")
-    with own["name"].blamed():
-        path = profile_path(own["name"].string())
-    return _profile_sections(read_yaml(path).root)
+    return _profile_sections(read_yaml(find_profile(own["name"])).root)
 
 
 def _profile_sections(profile: Node) -> RobotSections:

@@ -130,6 +130,22 @@ def test_a_silent_stage_is_told_again_once_a_second() -> None:
     assert moments[-1] - moments[0] >= 2.0, "three times, a second apart, not at each look"
 
 
+def test_no_stage_of_a_plan_begins_anew(small: dict[str, Any], write: Callable[..., Path]) -> None:
+    """Of seven stops drives are estimated, chosen and planned one after the other, and picks are planned stop after stop."""
+    tray = {**small["trays"][0], "parts": [{"type": "bracket", "xyz": [0.0, 0.0]}], "targets": [0]}
+    trays = [{**tray, "name": f"T{k}", "pose": {"xyz": [2.0, 3.2 * k - 10, 0.706]}} for k in range(7)]
+    room = {"trays": trays, "obstacles": [], "start": [0, 0, 0], "goal": [-1, 0, 0]}
+    options = {"options": {"grid_resolution": 0.1, "robustness_samples": 0, "seed": 1}, "reach": {"samples": 100_000}}
+    told: dict[str, list[float]] = {}
+    plan = mg.plan_part_supply(
+        write({**small, **room, **options}), progress=lambda stage, share: told.setdefault(stage, []).append(share)
+    )
+    assert plan.outcome == mg.Outcome.solved and len(plan.stops) == 7
+    for stage, shares in told.items():
+        assert shares == sorted(shares) and 0 <= shares[0] and shares[-1] <= 1, (stage, shares)
+    assert len(set(told["route"])) > 5
+
+
 def test_an_error_in_the_progress_callback_ends_the_call(small_path: Path) -> None:
     arm = mg.load_scenario(small_path).setup.arm
 

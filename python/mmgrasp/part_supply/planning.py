@@ -14,13 +14,14 @@ from .. import _core
 from .._argument_errors import checked
 from .._core import InvalidInput, Outcome, PartSupplyPlan, PartSupplyProblem, ReachDatabase, RobotMotion
 from .._files import check_file, write_file, write_files
-from .._progress import Progress, is_callers
+from .._progress import Progress, growing, is_callers
 from ..scenario import Scenario, load_scenario
 from .chosen_parts import by_number, choose_parts, others_will_do
 from .plan_writer import plan_to_dict, scenario_to_dict
 from .premises import Premises, premises
 from .round_motion import RoundMotion
 
+_IN_PASSES = ("route", "picks")  # of the floor, of drives to choose from and of those that are driven; stop after stop
 _MOST_CHOICES = 5  # choices of parts asked for by number that are planned for
 
 
@@ -145,9 +146,10 @@ def plan_part_supply(
 
     `scenario` is a Scenario or a path to its YAML file and stays as it is; `seed` and `threads` go before those of its
     options, for this call. Given as objects instead, a PartSupplyProblem comes with its arm's reachability database, its
-    seed and threads are in its own options, and the answer is the plan alone. `progress` is called with (stage, fraction).
+    seed and threads are in its own options, and the answer is the plan alone. `progress` is called with (stage, fraction), of each stage with fractions that grow.
     Raises InvalidInput or IoError on bad input; that there is no plan is said by the answer's `outcome` and `obstructions`.
     """
+    progress = growing(progress, _IN_PASSES)
     if isinstance(scenario, PartSupplyProblem):
         if database is None:
             raise InvalidInput("database = None: a PartSupplyProblem needs its arm's ReachDatabase")

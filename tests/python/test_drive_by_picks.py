@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import io
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,9 @@ import pytest
 import mmgrasp as mg
 from conftest import ASSETS
 from mmgrasp import sim
+from mmgrasp.cli import main
 from mmgrasp.part_supply.consistency import check_consistency
+from mmgrasp.part_supply.drive_by import check_in_passing
 from mmgrasp.part_supply.plan_file import plan_schema
 from mmgrasp.viz.report import report_html
 from mmgrasp.viz.timeline import GRIP_TIME, Timeline
@@ -302,3 +305,18 @@ def test_it_can_be_stopped(small_plan: mg.part_supply.ScenarioPlan) -> None:
 
     with pytest.raises(StopError):
         mg.part_supply.plan_drive_by_picks(small_plan, progress=progress)
+
+
+def test_fingers_that_close_for_minutes_are_refused_before_the_round_is_planned(
+    small: dict[str, Any], write: Callable[..., Path], capfd: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    """They close by twice the clearance, 20 mm: 12 s at 1.67 mm/s, 200 s at 0.1 mm/s."""
+    file = write({**small, "gripper": {**small["gripper"], "closing_speed": 0.0001}})
+    line = next(i for i, text in enumerate(file.read_text().splitlines(), 1) if "closing_speed" in text)
+    assert main(["plan", str(file), "-o", str(tmp_path / "out"), "--drive-by"]) == 2
+    said = capfd.readouterr().err.splitlines()[-1]
+    assert f"{file}:{line}: gripper.closing_speed = 0.0001: fingers close for 200 s on A/bracket_00" in said
+    assert "more than 12 s: must be at least 0.001667 m/s" in said
+    assert not (tmp_path / "out").exists()
+    enough = {**small["gripper"], "closing_speed": 0.0017}
+    check_in_passing(mg.load_scenario(write({**small, "gripper": enough})))

@@ -30,6 +30,9 @@ from .round_motion import InPassing, RoundMotion
 
 WAYPOINTS = (35, 45)  # tried one after the other
 BETWEEN = 9  # samples written between waypoints
+LONGEST_CLOSING = (
+    12.0  # held in steps of 0.12 s, of which the library takes 100: in longer ones no motion keeps the tool still [s]
+)
 
 
 @dataclass
@@ -205,6 +208,23 @@ def check_in_passing(scenario: Scenario) -> None:
             f"{scenario.source}: drive_clearance = {scenario.drive_clearance:g}: motions of a drive-by do not keep it: "
             "leave it out for them"
         )
+    _check_closing(scenario)
+
+
+def _check_closing(scenario: Scenario) -> None:
+    """Raises InvalidInput where fingers close for so long that a motion in passing would only be sought in vain, for minutes."""
+    hand, speed = scenario.setup.gripper, scenario.setup.closing_speed
+    for tray in scenario.trays:
+        for part in tray.tray.parts:
+            if part.name not in tray.targets or not part.grasps:
+                continue
+            way = min(hand.pregrasp_opening(grasp.opening) - grasp.opening for grasp in part.grasps)
+            if way / speed > LONGEST_CLOSING:
+                section = scenario.setup.sections.gripper
+                (section["closing_speed"] if "closing_speed" in section else section).fail(
+                    f"fingers close for {way / speed:.4g} s on {part.name}, and drive-by takes nothing in passing that needs more than "
+                    f"{LONGEST_CLOSING:g} s: must be at least {way / LONGEST_CLOSING:.4g} m/s for it"
+                )
 
 
 @checked

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -159,6 +161,35 @@ def test_an_interrupted_run_goes_on_from_its_checkpoint(tmp_path: Path, monkeypa
     monkeypatch.setattr(mg.ProbabilisticSdf, "integrate", integrate)
     assert run(tmp_path / "frames", tmp_path / "map") == 0
     assert contents(tmp_path / "map") == contents(tmp_path / "whole")
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_run_that_is_ended_in_its_first_seconds_saves_what_is_done(
+    number: signal.Signals, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """The signal comes while the third frame goes into the map, which is finished first."""
+    write_frames(tmp_path / "frames", "seven_scenes", 5)
+    assert run(tmp_path / "frames", tmp_path / "whole") == 0
+    integrate, calls = mg.ProbabilisticSdf.integrate, []
+
+    def ended(self: mg.ProbabilisticSdf, *arguments: Any, **keywords: Any) -> Any:
+        calls.append(1)
+        report = integrate(self, *arguments, **keywords)
+        if len(calls) == 3:
+            os.kill(os.getpid(), number)
+        return report
+
+    monkeypatch.setattr(mg.ProbabilisticSdf, "integrate", ended)
+    capfd.readouterr()
+    assert run(tmp_path / "frames", tmp_path / "map") == 128 + number
+    assert f": the map of 3 frames is in {tmp_path / 'map'}; the same command goes on\n" in capfd.readouterr().err
+    assert names(tmp_path / "map") == {"partial_000003.sdf", "progress.json", LIST}
+    assert run(tmp_path / "frames", tmp_path / "map") == 0
+    assert len(calls) == 5
+    assert contents(tmp_path / "map") == contents(tmp_path / "whole")
+    calls.clear()
+    assert run(tmp_path / "frames", tmp_path / "map", "--start-over") == 128 + number
+    assert contents(tmp_path / "map") == contents(tmp_path / "whole"), "begun anew, and thought better of at once"
 
 
 def save_each(checkpoints: Any, scan: Any) -> None:

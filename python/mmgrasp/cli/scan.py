@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import json
 import os
 import time
+from collections.abc import Iterator
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -33,6 +35,7 @@ from ..scan.summary import scan_summary
 from .console import Reporter
 from .exit_codes import DONE, NOTHING_USABLE
 from .output_folder import LIST, OutputFolder
+from .signals import uninterrupted
 
 MAP = "map.sdf"
 PARTIAL = "partial_*.sdf"
@@ -54,11 +57,13 @@ def run_scan(arguments: argparse.Namespace, console: Console) -> int:
     with Reporter(console) as report:
         frames = open_frames(arguments.frames, arguments.sensors)
         scan = _begin(arguments, frames, folder)
-        added = integrate_frames(frames, scan, arguments.every, report, _Checkpoints(folder))
-        if not scan.frames:
-            _print_nothing(scan, console, arguments.json)
-            return NOTHING_USABLE
-        octree = None if arguments.octree is None else occupancy_of(frames, scan, arguments.octree, report)
+        checkpoints = _Checkpoints(folder, scan, arguments.start_over)
+        with checkpoints.last_one(scan, report):
+            added = integrate_frames(frames, scan, arguments.every, report, checkpoints, uninterrupted)
+            if not scan.frames:
+                _print_nothing(scan, console, arguments.json)
+                return NOTHING_USABLE
+            octree = None if arguments.octree is None else occupancy_of(frames, scan, arguments.octree, report)
         summary = _write(scan, frames, folder, octree, report, arguments)
     if arguments.json:
         print(json.dumps({**summary, "added": added}, indent=1, allow_nan=False))
@@ -99,19 +104,45 @@ def _begin(arguments: argparse.Namespace, frames: FrameFolder, folder: OutputFol
 class _Checkpoints:
     """Saves the map now and then, with the list of its frames; each one replaces the one before."""
 
-    def __init__(self, folder: OutputFolder) -> None:
+    def __init__(self, folder: OutputFolder, scan: Scan, start_over: bool) -> None:
         self._folder = folder
         self._last = time.monotonic()
         self._pause = CHECKPOINT_SECONDS
+        self._saved = len(scan.frames)
+        self._start_over = start_over
+        self._replaces = start_over and (folder.path / PROGRESS_FILE).exists()
 
     def __call__(self, scan: Scan) -> None:
         begun = time.monotonic()
         if begun - self._last < self._pause:
             return
-        name = PARTIAL.replace("*", f"{len(scan.frames):06d}")
-        self._folder.fill(lambda draft: _save(scan, draft, name), added=True, replacing=PARTIAL)
+        self._fill(scan)
         self._last = time.monotonic()
         self._pause = max(CHECKPOINT_SECONDS, 20 * (self._last - begun))  # large maps take long to save
+
+    @contextlib.contextmanager
+    def last_one(self, scan: Scan, report: Reporter) -> Iterator[None]:
+        """Saves what the map holds when Ctrl-C or a signal ends the block; a second one ends that, too.
+
+        Another map that --start-over is about to replace stays what it is until the first checkpoint.
+        """
+        try:
+            yield
+        except KeyboardInterrupt as ended:  # or Ended, with the signal's number
+            done = len(scan.frames)
+            if done > self._saved and scan.sdf.frames == done and not self._replaces:
+                report("saving the map", 0.0)
+                self._fill(scan)
+            if self._saved and not self._replaces:
+                count = f"{self._saved} frame{'' if self._saved == 1 else 's'}"
+                where, rest = printable(str(self._folder.path)), ", without --start-over" if self._start_over else ""
+                ended.args = (f"the map of {count} is in {where}; the same command goes on{rest}",)
+            raise
+
+    def _fill(self, scan: Scan) -> None:
+        name = PARTIAL.replace("*", f"{len(scan.frames):06d}")
+        self._folder.fill(lambda draft: _save(scan, draft, name), added=True, replacing=PARTIAL)
+        self._saved, self._replaces = len(scan.frames), False
 
 
 def _save(scan: Scan, draft: Path, name: str) -> None:

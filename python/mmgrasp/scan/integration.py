@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
@@ -113,11 +114,13 @@ def integrate_frames(
     every: int = 1,
     progress: Progress = None,
     on_frame: Callable[[Scan], object] | None = None,
+    undivided: Callable[[], contextlib.AbstractContextManager[object]] = contextlib.nullcontext,
 ) -> int:
     """Adds what is not yet in the map and returns how many frames that were.
 
     Takes every `every`-th frame of each sensor. Afterwards `scan.skipped` holds all that were left out. `on_frame` is
-    called after each that was added. Raises InvalidInput, with the map as it was before that frame, when what was integrated
+    called after each that was added. What holds a signal back for a moment may be given as `undivided`: a frame comes into the map and
+    into `scan.frames` within it. Raises InvalidInput, with the map as it was before that frame, when what was integrated
     earlier has changed, when the map grows too large, and when poses turn out to lead from the world to the camera.
     """
     _compare_sensors(folder, scan)
@@ -130,7 +133,7 @@ def integrate_frames(
         if progress:
             progress(STAGE, i / len(todo))
         try:
-            record = _add(folder, scan, frame)
+            _add(folder, scan, frame, undivided)
         except Error as error:
             reason = _advised(folder, frame, str(error))
             if str(error).startswith("max_memory"):
@@ -142,7 +145,6 @@ def integrate_frames(
                 raise InvalidInput(f"{frame.name}: {reason}; {inverted} frames say so") from None
             scan.skipped.append(SkippedFrame(frame.name, frame.sensor, reason))
             continue
-        scan.frames.append(record)
         added += 1
         if on_frame:
             on_frame(scan)
@@ -253,16 +255,21 @@ def _depths(image: DepthImage, nearest: float, farthest: float) -> tuple[float, 
     return float(np.median(seen)), float(np.quantile(seen, 0.95))
 
 
-def _add(folder: FrameFolder, scan: Scan, frame: Frame) -> FrameRecord:
+def _add(
+    folder: FrameFolder, scan: Scan, frame: Frame, undivided: Callable[[], contextlib.AbstractContextManager[object]]
+) -> None:
     content = frame_bytes(frame)
     loaded = folder.read(frame, content)
     unregistered = ""
     if scan.options.register:
         loaded, unregistered = _registered(scan.sdf, loaded, folder.sensors[loaded.camera.name])
-    report = scan.sdf.integrate(loaded.image, loaded.camera, pose_covariance=loaded.pose_covariance, sigma=loaded.sigma)
     sensor = loaded.camera.name
-    scan.sensors.setdefault(sensor, described(folder, folder.sensors[sensor]))
-    return _record(frame.name, sensor, content.digest, loaded.image, report, unregistered)
+    with undivided():
+        report = scan.sdf.integrate(
+            loaded.image, loaded.camera, pose_covariance=loaded.pose_covariance, sigma=loaded.sigma
+        )
+        scan.sensors.setdefault(sensor, described(folder, folder.sensors[sensor]))
+        scan.frames.append(_record(frame.name, sensor, content.digest, loaded.image, report, unregistered))
 
 
 def _registered(sdf: ProbabilisticSdf, loaded: LoadedFrame, sensor: Sensor) -> tuple[LoadedFrame, str]:

@@ -131,7 +131,7 @@ def test_a_silent_stage_is_told_again_once_a_second() -> None:
 
 
 def test_no_stage_of_a_plan_begins_anew(small: dict[str, Any], write: Callable[..., Path]) -> None:
-    """Of seven stops drives are estimated, chosen and planned one after the other, and picks are planned stop after stop."""
+    """Drives between seven stops are estimated, chosen and planned one after the other, and picks are planned stop after stop."""
     tray = {**small["trays"][0], "parts": [{"type": "bracket", "xyz": [0.0, 0.0]}], "targets": [0]}
     trays = [{**tray, "name": f"T{k}", "pose": {"xyz": [2.0, 3.2 * k - 10, 0.706]}} for k in range(7)]
     room = {"trays": trays, "obstacles": [], "start": [0, 0, 0], "goal": [-1, 0, 0]}

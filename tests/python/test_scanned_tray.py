@@ -198,7 +198,7 @@ def test_a_folder_of_mmgrasp_scan_and_bad_input(
     )
     assert "friction" in refused({"map": str(tmp_path / "map"), "grasp_options": {"friction": -1}})
     narrow = copy.deepcopy(values)
-    narrow["gripper"] |= {"max_opening": 0.02}
+    narrow["gripper"] |= {"max_opening": 0.02, "clearance": 0.005}
     for joint in narrow["gripper"]["joints"]:
         joint["open"] = joint["closed"] + 0.01
     narrow["trays"][0]["scan"] = str(tmp_path / "map")

@@ -74,9 +74,9 @@ def test_all_cans_are_planned_and_verified(plan: ScenarioPlan, content: dict[str
 
 
 def test_verify_rates_by_the_pads_of_the_fingertips(content: dict[str, Any]) -> None:
-    """Two pads in the hand's middle are no measure of it; a better probability or another width than the map's are refused."""
+    """Two pads in the hand's middle are no measure of it; another probability or width than the map's are refused."""
 
-    def promising(content: dict[str, Any]) -> None:
+    def unlike(content: dict[str, Any]) -> None:
         grasp = picked(content)
         grasp["probability"] = grasp["quality"] = grasp["probability"] - 0.15
 
@@ -94,10 +94,24 @@ def test_verify_rates_by_the_pads_of_the_fingertips(content: dict[str, Any]) -> 
 
     assert content["scenario"]["scans"][0]["fingertips"] is True
     assert not faults(content)
-    assert "grasp-probability" in faults(content, promising)
+    assert "grasp-probability" in faults(content, unlike)
     assert "grasp-opening" in faults(content, wider)
     assert "grasp-opening" in faults(content, aside)
     assert "grasp-probability" in faults(content, two_pads)
+
+
+def test_a_clearance_wider_than_the_hand_opens_is_judged_as_far_as_it_opens(
+    own_cache: None, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Cans of 70 and 80 mm and 30 mm on either side: the hand opens 106 mm."""
+    path = scenario(tmp_path, OPTIONS)
+    raw = yaml.safe_load(path.read_text())
+    raw["gripper"]["clearance"] = 0.03
+    path.write_text(yaml.safe_dump(raw))
+    plan = plan_part_supply(mg.load_scenario(path))
+    assert "gripper.clearance: 0.03 m is more than" in caplog.text
+    assert plan.outcome == mg.Outcome.solved, plan
+    assert not faults(json.loads(json.dumps(plan.to_dict())))
 
 
 @pytest.mark.parametrize(

@@ -60,12 +60,12 @@ _QUIET = 10.0  # [s] after which a stage says again how far it is, where no bars
 
 
 class Reporter:
-    """Called with (stage, fraction); shows each stage in the order they begin, never less of it than before: as a bar, or as lines where standard error is no terminal."""
+    """Called with (stage, fraction); shows each stage in the order they begin: as a bar, or as lines where standard error is no terminal."""
 
     def __init__(self, console: Console) -> None:
         self._bars: Progress | None = None
         self._tasks: dict[str, TaskID] = {}
-        self._furthest: dict[str, float] = {}
+        self._seen: set[str] = set()
         self._begun = self._told = time.monotonic()
         if sys.stderr.isatty():
             columns = (
@@ -93,26 +93,24 @@ class Reporter:
     def __call__(self, stage: str, fraction: float) -> None:
         if not stage:
             return
-        new = stage not in self._furthest
-        fraction = self._furthest[stage] = max(fraction, self._furthest.get(stage, 0.0))
         if self._bars is None:
-            self._tell_in_lines(stage, fraction, new)
+            self._tell_in_lines(stage, fraction)
             return
-        if new:
-            for name, task in self._tasks.items():
-                self._furthest[name] = 1.0
+        if stage not in self._tasks:
+            for task in self._tasks.values():
                 self._bars.update(task, completed=1.0)
             self._tasks[stage] = self._bars.add_task(stage, total=1.0)
         self._bars.update(self._tasks[stage], completed=fraction)
 
-    def _tell_in_lines(self, stage: str, fraction: float, new: bool) -> None:
+    def _tell_in_lines(self, stage: str, fraction: float) -> None:
         now = time.monotonic()
-        if new:
+        if stage not in self._seen:
             print(f"[{now - self._begun:6.1f} s] {stage}", file=sys.stderr, flush=True)
         elif now - self._told >= _QUIET:
             print(f"[{now - self._begun:6.1f} s] {stage}, {100 * fraction:.0f} %", file=sys.stderr, flush=True)
         else:
             return
+        self._seen.add(stage)
         self._told = now
 
 

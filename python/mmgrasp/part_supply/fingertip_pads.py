@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .._core import LinkShape, Robot
+from .._core import InvalidInput, LinkShape, Robot
 from ..documents.reading import Node
 from ..scenario.scan_section import moved
 
@@ -67,10 +67,15 @@ class Fingertips:
                 node.fail("the robot has no such link")
             if not self._robot.collisions(link) or np.allclose(half[link], closer[link], rtol=0, atol=1e-9):
                 node.fail("must have a shape and move with the hand's joints: it has a pad on a scanned part")
-            self._pads[link] = self._inner_face(link, half[link], closer[link])
+            with node.blamed():
+                self._pads[link] = self._inner_face(link, half[link], closer[link])
+
+    def within(self, opening: float) -> float:
+        """The opening that the hand can have next to this one [m]."""
+        return float(np.clip(opening, self._openings[0], self._openings[-1]))
 
     def pads(self, opening: float) -> list[Pad]:
-        """All pads with the hand open by so much [m]."""
+        """All pads with the hand open by so much [m], an opening that it can have."""
         share = float(np.interp(opening, self._openings, np.linspace(0, 1, len(self._openings))))
         poses = self._poses(share)
         out = []
@@ -95,6 +100,10 @@ class Fingertips:
         along = middle / length if length > 1e-6 else np.array([0.0, 0.0, 1.0])
         push = now[:3, :3].T @ ((then - now) @ [*middle, 1.0])[:3]
         push = push - (push @ along) * along
+        if np.linalg.norm(push) < 1e-9:
+            raise InvalidInput(
+                f"{link}: must move across its length as the hand closes: it has a pad on a scanned part"
+            )
         push = push / np.linalg.norm(push)
         axes = np.eye(4)
         axes[:3, :3] = np.vstack((along, np.cross(push, along), push))

@@ -148,11 +148,13 @@ def _rated(
     T = T_world_part @ grasp["pose"].pose()
     clearance = gripper["clearance"].number(least=0)
     wide = min(grasp["opening"].number() + 2 * clearance, gripper["max_opening"].number())
+    if tips is not None:
+        wide = tips.within(wide)
     pads = two_pads(gripper, wide) if tips is None else tips.pads(wide)
     met = _patches(sdf, pads, T, wide, options)
     if tips is not None and met:
         # The search has the planes, not the first points, `clearance` away.
-        wide -= 2 * (float(np.mean([patch.distance for patch in met])) - clearance)
+        wide = tips.within(wide - 2 * (float(np.mean([patch.distance for patch in met])) - clearance))
         pads = tips.pads(wide)
         met = _patches(sdf, pads, T, wide, options)
     if not met:

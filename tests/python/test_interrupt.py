@@ -142,7 +142,7 @@ def test_no_stage_of_a_plan_begins_anew(small: dict[str, Any], write: Callable[.
     )
     assert plan.outcome == mg.Outcome.solved and len(plan.stops) == 7
     for stage, shares in told.items():
-        assert shares == sorted(shares) and 0 <= shares[0] and shares[-1] <= 1, (stage, shares)
+        assert shares == sorted(shares) and 0 <= shares[0] and shares[-1] == 1, (stage, shares)
     assert len(set(told["route"])) > 5
 
 

@@ -146,36 +146,38 @@ def plan_part_supply(
 
     `scenario` is a Scenario or a path to its YAML file and stays as it is; `seed` and `threads` go before those of its
     options, for this call. Given as objects instead, a PartSupplyProblem comes with its arm's reachability database, its
-    seed and threads are in its own options, and the answer is the plan alone. `progress` is called with (stage, fraction), of each stage with fractions that grow.
+    seed and threads are in its own options, and the answer is the plan alone. `progress` is called with (stage, fraction), of each stage with fractions that grow to 1.
     Raises InvalidInput or IoError on bad input; that there is no plan is said by the answer's `outcome` and `obstructions`.
     """
-    progress = growing(progress, _IN_PASSES)
-    if isinstance(scenario, PartSupplyProblem):
-        if database is None:
-            raise InvalidInput("database = None: a PartSupplyProblem needs its arm's ReachDatabase")
-        if seed is not None or threads is not None:
-            raise InvalidInput("seed, threads: those of a PartSupplyProblem are in its own options")
-        return _core.plan_part_supply(scenario, database, progress=progress)
-    if database is not None:
-        raise InvalidInput("database: only a PartSupplyProblem takes one; a scenario has its own (its section `reach`)")
-    begun = time.perf_counter()
-    if not isinstance(scenario, Scenario):
-        scenario = load_scenario(scenario, progress=progress)
-    given = {"seed": seed, "threads": threads}
-    options = scenario.options | {key: value for key, value in given.items() if value is not None}
-    scenario = replace(scenario, options=options)  # the caller's keeps its own
-    try:  # what only shows with the robot's reach known: cells too fine for it, too large a grid
-        problem = scenario.problem()
-        loaded = time.perf_counter()
-        reach = scenario.reach_database(progress)
-        timings = [("scenario", loaded - begun), ("reach database", time.perf_counter() - loaded)]
-        if by_number(scenario):
-            return _plan_by_number(scenario, reach, timings, progress)
-        return ScenarioPlan(scenario, _core.plan_part_supply(problem, reach, progress=progress), timings)
-    except InvalidInput as error:
-        if is_callers(error):
-            raise
-        raise InvalidInput(f"{scenario.source}: {error}") from None
+    with growing(progress, _IN_PASSES) as progress:
+        if isinstance(scenario, PartSupplyProblem):
+            if database is None:
+                raise InvalidInput("database = None: a PartSupplyProblem needs its arm's ReachDatabase")
+            if seed is not None or threads is not None:
+                raise InvalidInput("seed, threads: those of a PartSupplyProblem are in its own options")
+            return _core.plan_part_supply(scenario, database, progress=progress)
+        if database is not None:
+            raise InvalidInput(
+                "database: only a PartSupplyProblem takes one; a scenario has its own (its section `reach`)"
+            )
+        begun = time.perf_counter()
+        if not isinstance(scenario, Scenario):
+            scenario = load_scenario(scenario, progress=progress)
+        given = {"seed": seed, "threads": threads}
+        options = scenario.options | {key: value for key, value in given.items() if value is not None}
+        scenario = replace(scenario, options=options)  # the caller's keeps its own
+        try:  # what only shows with the robot's reach known: cells too fine for it, too large a grid
+            problem = scenario.problem()
+            loaded = time.perf_counter()
+            reach = scenario.reach_database(progress)
+            timings = [("scenario", loaded - begun), ("reach database", time.perf_counter() - loaded)]
+            if by_number(scenario):
+                return _plan_by_number(scenario, reach, timings, progress)
+            return ScenarioPlan(scenario, _core.plan_part_supply(problem, reach, progress=progress), timings)
+        except InvalidInput as error:
+            if is_callers(error):
+                raise
+            raise InvalidInput(f"{scenario.source}: {error}") from None
 
 
 def _plan_by_number(

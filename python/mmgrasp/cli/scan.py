@@ -64,6 +64,9 @@ def run_scan(arguments: argparse.Namespace, console: Console) -> int:
                 _print_nothing(scan, console, arguments.json)
                 return NOTHING_USABLE
             octree = None if arguments.octree is None else occupancy_of(frames, scan, arguments.octree, report)
+            # The map first, so that it is there whatever becomes of the rest.
+            report("writing the map", 0.0)
+            folder.fill(lambda draft: _save(scan, draft, MAP))
         summary = _write(scan, frames, folder, octree, report, arguments)
     if arguments.json:
         print(json.dumps({**summary, "added": added}, indent=1, allow_nan=False))
@@ -158,9 +161,7 @@ def _write(
     report: Reporter,
     arguments: argparse.Namespace,
 ) -> dict[str, Any]:
-    """The map first, so that it is there whatever becomes of the rest; then what is made of it."""
-    report("writing the map", 0.0)
-    folder.fill(lambda draft: _save(scan, draft, MAP))
+    """What is made of the map."""
     report("mesh", 0.0)
     mesh, sigmas = scan.sdf.mesh()
     points, triangles = mesh.vertices, mesh.triangles

@@ -25,8 +25,13 @@ def check_clearance(key: Node | None, hands: Collection[Hand]) -> None:
         )
 
 
-def warn_of_little_room(key: Node, hand: Hand, trays: Collection[TraySetup]) -> None:
-    """Tells of each type to be picked that the hand cannot open for by clearance on both sides, in none of its grasps: it comes with less."""
+def warn_of_little_room(key: Node | None, hand: Hand, trays: Collection[TraySetup]) -> None:
+    """Tells of each type to be picked that the hand cannot open for by clearance on both sides, in none of its grasps: it comes with less.
+
+    A clearance that nobody stated is a wish.
+    """
+    if key is None:
+        return
     narrowest: dict[str, float] = {}
     for tray in trays:
         for part in tray.tray.parts:

@@ -89,10 +89,10 @@ def read_types(node: Node, robot: Robot, tool_link: str) -> dict[str, Hand]:
 
 def clearance_key(node: Node) -> Node | None:
     """Where the section, or the profile that it names, states the clearance; None: nowhere."""
-    for section in (node, _profile_of(node["name"])) if "name" in node else (node,):
-        if "clearance" in section:
-            return section["clearance"]
-    return None
+    if "clearance" in node:
+        return node["clearance"]
+    profile = _profile_of(node["name"]) if "name" in node else node
+    return profile["clearance"] if "clearance" in profile else None
 
 
 def _types_section(node: Node) -> TypesSection:

@@ -253,7 +253,8 @@ class ScanReader:
         options: dict[str, Any],
     ) -> str:
         """Which options would give the part grasps, tried."""
-        usual = {key: default for key, (default, _) in _core._synthesis_option_table().items()} | options
+        usual = {key: default for key, (default, _) in _core._synthesis_option_table().items()}
+        usual |= {"samples": SAMPLES, "max_grasps": MOST_GRASPS} | options
         tried = [{key: value for key, value in more.items() if value > usual[key]} for more in _HELPS]
         for more in [more for k, more in enumerate(tried) if more and more not in tried[:k]]:
             if grasps := self._sought(made, thing, shapes, T_world_part, options | more)[2]:

@@ -191,7 +191,7 @@ def _read_scenario(
     scans = ScanReader(closing, _in_world(obstacles), find_file, progress)
     trays = _read_trays(root, types, setup, scans)
     _warn_of_a_small_bin(trays, types, setup.place_region.size)
-    warn_of_little_room(clearance_key(setup.sections.gripper) or setup.sections.gripper, setup.gripper, trays)
+    warn_of_little_room(clearance_key(setup.sections.gripper), setup.gripper, trays)
     check_grid_size(root, trays, {key: value for key, (value, _) in _core._supply_option_table().items()} | options)
     for tray in trays:
         obstacles.append(Obstacle(f"tray {tray.tray.name}", tray.tray.T_world_tray, tray.walls))

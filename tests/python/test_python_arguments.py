@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib
 import inspect
 from collections.abc import Callable
@@ -47,6 +48,7 @@ WRONG: dict[str, tuple[list[Any], Any]] = {
     "Progress": ([3, "x", []], None),
     "Callable[..., Any]": ([3, "x", None], print),
     "Callable[[Scan], object] | None": ([3, "x"], None),
+    "Callable[[], contextlib.AbstractContextManager[object]]": ([3, "x", None], contextlib.nullcontext),
     "Iterable[str]": (["a", b"a", 3, None, [3], [b"a"]], ["a"]),
     "Sequence[dict[str, Any]]": (["a", 3, None, [3]], [{}]),
     "Sequence[np.ndarray]": (["a", 3, None], [np.eye(4)]),

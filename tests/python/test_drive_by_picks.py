@@ -316,7 +316,7 @@ def test_fingers_that_close_for_minutes_are_refused_before_the_round_is_planned(
     assert main(["plan", str(file), "-o", str(tmp_path / "out"), "--drive-by"]) == 2
     said = capfd.readouterr().err.splitlines()[-1]
     assert f"{file}:{line}: gripper.closing_speed = 0.0001: fingers close for 200 s on A/bracket_00" in said
-    assert "more than 12 s: must be at least 0.001667 m/s" in said
+    assert "more than 11.9 s: must be at least 0.001681 m/s" in said
     assert not (tmp_path / "out").exists()
     enough = {**small["gripper"], "closing_speed": 0.0017}
     check_in_passing(mg.load_scenario(write({**small, "gripper": enough})))

@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 
 import mmgrasp as mg
+from mmgrasp import verify as checks
 from mmgrasp.base import Part
 from mmgrasp.part_supply import plan_part_supply
-from mmgrasp.scenario import Scenario
+from mmgrasp.scenario import Scenario, held_grasps
 from test_hand_in_a_round import OMNI, PINCH, tip_middle, with_hand, written
 
 HALF = 0.012  # half the side of a fingertip's box [m]
@@ -55,6 +56,21 @@ def pushed(scenario: Scenario, grasp: mg.Grasp, radius: float) -> float:
             gaps[side] = min(gap, gaps.get(side, np.inf))
     assert len(gaps) == 2
     return abs(gaps[1.0] - gaps[-1.0]) / 2
+
+
+@pytest.mark.parametrize("width", [0.02, 0.05])
+def test_a_shift_counts_on_the_play_that_verify_has(width: float, scenario: Scenario) -> None:
+    """Beside the middle by a little less, `verify` takes the pads for the grasp's; by a little more it does not."""
+    hand = scenario.setup.gripper
+    box = [mg.LinkShape(mg.Box([width, width, 0.08]))]
+    play = max(held_grasps._PLAY, held_grasps._SHARE * width)
+    across, down = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, -1.0])
+    T = np.eye(4)
+    hand_axes = np.column_stack((hand.approach, hand.closing, np.cross(hand.approach, hand.closing)))
+    T[:3, :3] = np.column_stack((down, across, np.cross(down, across))) @ hand_axes.T
+    for by, unlike in ((0.0, False), (play - 1e-4, False), (play + 1e-4, True)):
+        T[:3, 3] = by * across
+        assert bool(checks.pads_unlike_grasp(hand, box, checks.CheckedGrasp(T, width))) is unlike, by
 
 
 def from_above(scenario: Scenario, part: Part) -> list[mg.Grasp]:

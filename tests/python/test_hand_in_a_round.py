@@ -106,25 +106,16 @@ def test_pictures_show_the_fingers_where_they_are(planned: tuple[ScenarioPlan, P
             assert shown[name] == pytest.approx(value, abs=1e-9)
 
 
-@pytest.mark.skipif(mujoco is None, reason="MuJoCo is not installed (pip install 'mmgrasp[sim]')")
-def test_a_part_stays_in_the_hand(planned: tuple[ScenarioPlan, Path]) -> None:
-    """Approach, closing and lift in physics: the part rises with the tool, and the fingertips alone hold it."""
-    plan, _ = planned
-    pick, setup = plan.picks[0], plan.scenario.setup
-    part = plan.scenario.trays[pick.tray].tray.parts[pick.part]
+def lifted(plan: ScenarioPlan, pick: mg.base.Pick, part: sim.SimPart) -> sim.SimResult:
+    """Approach, closing and lift of a pick in physics, beside the plan's obstacles."""
+    setup = plan.scenario.setup
     approach = next(m for m in pick.motions if m.kind == "approach")
     world = mg.World()
     for body in plan.scenario.obstacles:
         world.add(body.name, body.shapes, body.pose)
-    scene = sim.Simulation(
-        setup.robot,
-        world,
-        [sim.SimPart(part.name, part.shapes, part.T_world_part, mass=0.1)],
-        gripper=setup.gripper,
-        joints=setup.other_joints,
-        physics=sim.Physics(time_step=0.001),
-    )
-    result = scene.run(
+    physics, joints = sim.Physics(time_step=0.001), setup.other_joints
+    scene = sim.Simulation(setup.robot, world, [part], gripper=setup.gripper, joints=joints, physics=physics)
+    return scene.run(
         approach.trajectory,
         base=plan.stops[pick.stop].pose,
         arm=setup.arm,
@@ -132,8 +123,17 @@ def test_a_part_stays_in_the_hand(planned: tuple[ScenarioPlan, Path]) -> None:
         lift=0.05,
         hold=0.3,
     )
+
+
+@pytest.mark.skipif(mujoco is None, reason="MuJoCo is not installed (pip install 'mmgrasp[sim]')")
+def test_a_part_stays_in_the_hand(planned: tuple[ScenarioPlan, Path]) -> None:
+    """Approach, closing and lift in physics: the part rises with the tool, and the fingertips alone hold it."""
+    plan, _ = planned
+    pick = plan.picks[0]
+    part = plan.scenario.trays[pick.tray].tray.parts[pick.part]
+    result = lifted(plan, pick, sim.SimPart(part.name, part.shapes, part.T_world_part, mass=0.1))
     touching = {e.b if e.a == part.name else e.a for e in result.contacts if e.end > result.duration - 0.05}
-    assert touching == set(setup.gripper.finger_links)
+    assert touching == set(plan.scenario.setup.gripper.finger_links)
     rise = result.states[-1]["parts"][part.name][2, 3] - part.T_world_part[2, 3]
     assert rise == pytest.approx(0.05, abs=0.005)
 

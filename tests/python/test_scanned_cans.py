@@ -15,7 +15,7 @@ import yaml
 import mmgrasp as mg
 from mmgrasp import sim
 from mmgrasp.part_supply import ScenarioPlan, plan_part_supply
-from test_hand_in_a_round import PINCH, SCANNED, with_hand
+from test_hand_in_a_round import PINCH, SCANNED, lifted, with_hand
 
 try:
     import mujoco
@@ -136,33 +136,21 @@ def test_a_hand_without_such_pads_is_told(key: str, value: Any, said: str, conte
 @pytest.mark.skipif(mujoco is None, reason="MuJoCo is not installed (pip install 'mmgrasp[sim]')")
 def test_the_cans_themselves_stay_in_the_hand(plan: ScenarioPlan) -> None:
     """Approach, closing and lift at the cans as they are, which the planner never saw: pushed by less than 1 mm, and held by fingertips alone."""
-    setup = plan.scenario.setup
-    world = mg.World()
-    for body in plan.scenario.obstacles:
-        world.add(body.name, body.shapes, body.pose)
     for pick in plan.picks:
         seen = plan.scenario.trays[pick.tray].tray.parts[pick.part].T_world_part[:3, 3]
         y = min(RADII, key=lambda y: abs(float(seen[1]) - y))
         stands = mg.pose(FLOOR + [0, y, 0.001 + LENGTH / 2])
         part = sim.SimPart("can", [mg.LinkShape(mg.Cylinder(RADII[y], LENGTH))], stands, mass=0.3)
-        physics = sim.Physics(time_step=0.001)
-        scene = sim.Simulation(
-            setup.robot, world, [part], gripper=setup.gripper, joints=setup.other_joints, physics=physics
-        )
-        approach = next(m for m in pick.motions if m.kind == "approach")
-        result = scene.run(
-            approach.trajectory,
-            base=plan.stops[pick.stop].pose,
-            arm=setup.arm,
-            opening=approach.opening,
-            lift=0.05,
-            hold=0.3,
-        )
+        result = lifted(plan, pick, part)
         moved = result.parts["can"]
         assert moved.grasped, moved.cause
         assert moved.displacement < 1e-3 and moved.slip < 1e-3
         touching = {e.b if e.a == "can" else e.a for e in result.contacts if e.end > result.duration - 0.05}
-        assert "hand_thumb_tip" in touching and 2 <= len(touching) and touching <= set(setup.gripper.finger_links)
+        assert (
+            "hand_thumb_tip" in touching
+            and 2 <= len(touching)
+            and touching <= set(plan.scenario.setup.gripper.finger_links)
+        )
 
 
 def test_a_can_without_a_grasp_says_which_options_help(own_cache: None, tmp_path: Path) -> None:

@@ -73,6 +73,17 @@ class _LoadedMap:
     bodies: list[tuple[list[LinkShape], np.ndarray]] = field(default_factory=list)
 
 
+@dataclass(frozen=True)
+class _SeenPart:
+    """A part that a map shows."""
+
+    made: _LoadedMap
+    thing: TrayObject
+    name: str
+    shapes: list[LinkShape]
+    T_world_part: np.ndarray
+
+
 class ScanReader:
     """Reads the key `scan` of one tray after another; `rest` is what the maps hold beside their parts."""
 
@@ -130,7 +141,8 @@ class ScanReader:
             T_tray_part = _core.pose([*footprints[k].T_tray_box[:2, 3], 0.0])
             shapes = [LinkShape(s.shape, np.linalg.inv(T_tray_part) @ s.pose) for s in shapes]
             try:
-                part = self._with_grasps(made, thing, name, shapes, T_world_tray @ T_tray_part, options, reasons)
+                seen = _SeenPart(made, thing, name, shapes, T_world_tray @ T_tray_part)
+                part = self._with_grasps(seen, options, reasons)
             except InvalidInput as error:
                 (node["grasp_options"] if options else named).fail(str(error))
             made.bodies.append((part.shapes, part.T_world_part))
@@ -199,17 +211,8 @@ class ScanReader:
                 raise
             node.fail(f"{error}: its frames are kept in the cache: set XDG_CACHE_HOME to a folder that can be written")
 
-    def _with_grasps(
-        self,
-        made: _LoadedMap,
-        thing: TrayObject,
-        name: str,
-        shapes: list[LinkShape],
-        T_world_part: np.ndarray,
-        options: dict[str, Any],
-        reasons: dict[str, Callable[[], str]],
-    ) -> Part:
-        found, rated, grasps = self._sought(made, thing, shapes, T_world_part, options)
+    def _with_grasps(self, seen: _SeenPart, options: dict[str, Any], reasons: dict[str, Callable[[], str]]) -> Part:
+        found, rated, grasps = self._sought(seen, options)
         if not grasps:
             if not found.grasps:
                 reason = found.summary()
@@ -217,47 +220,34 @@ class ScanReader:
                 reason = f"in none of {rated} grasps do fingers meet it from both sides, closing as far as they may ({CLOSING_PLAY})"
             else:
                 reason = f"in all {len(found.grasps)} grasps the pads would meet an edge"
-            reasons[name] = lambda: reason + self._advice(made, thing, shapes, T_world_part, options)
-        return Part(name, shapes, T_world_part, grasps, target=False, grasps_too_wide=found.counts["too_wide"])
+            reasons[seen.name] = lambda: reason + self._advice(seen, options)
+        wide = found.counts["too_wide"]
+        return Part(seen.name, seen.shapes, seen.T_world_part, grasps, target=False, grasps_too_wide=wide)
 
-    def _sought(
-        self,
-        made: _LoadedMap,
-        thing: TrayObject,
-        shapes: list[LinkShape],
-        T_world_part: np.ndarray,
-        options: dict[str, Any],
-    ) -> tuple[_core.GraspSynthesis, int, list[Grasp]]:
+    def _sought(self, seen: _SeenPart, options: dict[str, Any]) -> tuple[_core.GraspSynthesis, int, list[Grasp]]:
         """What was found, how many of its openings are those of the part's boxes, and those of them at which fingers meet it."""
         given = {"samples": SAMPLES, "max_grasps": MOST_GRASPS} | options
-        table, room = float(T_world_part[2, 3]), thing.bounds + [[-_ROOM], [_ROOM]]
+        table, room = float(seen.T_world_part[2, 3]), seen.thing.bounds + [[-_ROOM], [_ROOM]]
         found = _core.synthesize_grasps(
-            made.sdf, self._closing.hand, table=table, object=room, robot=self._closing.robot, **given
+            seen.made.sdf, self._closing.hand, table=table, object=room, robot=self._closing.robot, **given
         )
         if found.outcome == Outcome.stopped:
             raise KeyboardInterrupt
         grasps = []
         for grasp in found.grasps:
-            T = np.linalg.inv(T_world_part) @ grasp.T_object_hand
-            between = width_between(shapes, T, self._closing.hand)
+            T = np.linalg.inv(seen.T_world_part) @ grasp.T_object_hand
+            between = width_between(seen.shapes, T, self._closing.hand)
             if between is not None and abs(between - grasp.opening) <= _WIDTH_PLAY:
                 grasps.append(Grasp(T, grasp.opening, quality=grasp.quality))
-        return found, len(grasps), self._closing.met(shapes, grasps)
+        return found, len(grasps), self._closing.met(seen.shapes, grasps)
 
-    def _advice(
-        self,
-        made: _LoadedMap,
-        thing: TrayObject,
-        shapes: list[LinkShape],
-        T_world_part: np.ndarray,
-        options: dict[str, Any],
-    ) -> str:
+    def _advice(self, seen: _SeenPart, options: dict[str, Any]) -> str:
         """Which options would give the part grasps, tried."""
         usual = {key: default for key, (default, _) in _core._synthesis_option_table().items()}
         usual |= {"samples": SAMPLES, "max_grasps": MOST_GRASPS} | options
         tried = [{key: value for key, value in more.items() if value > usual[key]} for more in _HELPS]
         for more in [more for k, more in enumerate(tried) if more and more not in tried[:k]]:
-            if grasps := self._sought(made, thing, shapes, T_world_part, options | more)[2]:
+            if grasps := self._sought(seen, options | more)[2]:
                 said = ", ".join(f"{key}: {value:g}" for key, value in (options | more).items())
                 return f"; with grasp_options: {{{said}}} it has {len(grasps)}"
         return ""

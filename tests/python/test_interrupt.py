@@ -144,6 +144,7 @@ def test_no_stage_of_a_plan_begins_anew(small: dict[str, Any], write: Callable[.
     for stage, shares in told.items():
         assert shares == sorted(shares) and 0 <= shares[0] and shares[-1] == 1, (stage, shares)
     assert len(set(told["route"])) > 5
+    assert any(0.5 < share < 1 for share in told["route"]), "its passes go on from the ones before"
 
 
 def test_an_error_in_the_progress_callback_ends_the_call(small_path: Path) -> None:

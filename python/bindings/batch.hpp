@@ -19,6 +19,21 @@ inline Eigen::Map<const Eigen::MatrixXd> columns_of(const py::array_t<double>& r
   return {rows.data() + first * n, n, count};
 }
 
+/// Rows of a batch_argument() of three columns as positions.
+inline Eigen::Map<const Eigen::Matrix3Xd> positions_of(const py::array_t<double>& rows) {
+  return {rows.data(), 3, rows.shape(0)};
+}
+
+/// What work() returns for a batch of `rows`, without the GIL. Ctrl-C ends the work of a large one, of which
+/// parallel_for() does the most.
+template <typename Work>
+auto for_rows(Eigen::Index rows, Work&& work) {
+  constexpr Eigen::Index kFew = 4096;  // take less than the thread of a call that can be interrupted is worth
+  if (rows > kFew) return interruptible(work);
+  const Unlocked unlocked;
+  return work();
+}
+
 /// Calls work(first, count) without the GIL for pieces of a batch of `rows`, and looks for signals between them: Ctrl-C
 /// raises KeyboardInterrupt within about a tenth of a second, however large the batch. Rows must not depend on each
 /// other.

@@ -290,14 +290,7 @@ void bind_sdf(py::module_& m) {
           "query",
           [](const ProbabilisticSdf& sdf, const ArrayLike& points, int threads) {
             const auto rows = batch_argument(points, "points", 3);
-            SdfValues values{Eigen::VectorXd(rows.shape(0)), Eigen::VectorXd(rows.shape(0)),
-                             std::vector<std::uint8_t>(rows.shape(0))};
-            in_pieces(rows.shape(0), [&](Eigen::Index first, Eigen::Index count) {
-              const SdfValues piece = sdf.query(columns_of(rows, first, count), threads);
-              values.mean.segment(first, count) = piece.mean;
-              values.sigma.segment(first, count) = piece.sigma;
-              std::copy(piece.known.begin(), piece.known.end(), values.known.begin() + first);
-            });
+            const SdfValues values = for_rows(rows.shape(0), [&] { return sdf.query(positions_of(rows), threads); });
             return std::make_tuple(sdf_column(values.mean), sdf_column(values.sigma), sdf_flags(values.known));
           },
           "points"_a, "threads"_a = 0,
@@ -305,27 +298,10 @@ void bind_sdf(py::module_& m) {
       .def(
           "cast_rays",
           [](const ProbabilisticSdf& sdf, const ArrayLike& origins, const ArrayLike& directions, int threads) {
-            const Eigen::Matrix3Xd from = columns_argument(origins, "origins"),
-                                   along = columns_argument(directions, "directions");
-            const bool sound = from.cols() == along.cols() && from.allFinite() && along.allFinite() &&
-                               (along.array() != 0).colwise().any().all();
-            if (!sound) return sdf.cast_rays(from, along, threads);  // says what is wrong
-            SdfHits hits;
-            hits.hit.resize(from.cols());
-            hits.distance.resize(from.cols());
-            hits.point.resize(3, from.cols());
-            hits.normal.resize(3, from.cols());
-            hits.sigma.resize(from.cols());
-            in_pieces(from.cols(), [&](Eigen::Index first, Eigen::Index count) {
-              const SdfHits piece =
-                  sdf.cast_rays(from.middleCols(first, count), along.middleCols(first, count), threads);
-              std::copy(piece.hit.begin(), piece.hit.end(), hits.hit.begin() + first);
-              hits.distance.segment(first, count) = piece.distance;
-              hits.point.middleCols(first, count) = piece.point;
-              hits.normal.middleCols(first, count) = piece.normal;
-              hits.sigma.segment(first, count) = piece.sigma;
-            });
-            return hits;
+            const auto from = batch_argument(origins, "origins", 3),
+                       along = batch_argument(directions, "directions", 3);
+            return for_rows(from.shape(0),
+                            [&] { return sdf.cast_rays(positions_of(from), positions_of(along), threads); });
           },
           "origins"_a, "directions"_a, "threads"_a = 0,
           "The first surface from the front along each ray, (n, 3) both. Unknown space does not stop a ray.")

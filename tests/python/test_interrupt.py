@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 
 import mmgrasp as mg
-from argument_objects import ARM, OBJECTS, POSE, Q
+from argument_objects import ARM, OBJECTS, POSE, Q, sdf_map
 from costly_work import blind_motion
 
 
@@ -78,9 +78,21 @@ def test_a_set_cover_is_interrupted_at_any_moment(delay: float) -> None:
     timer.join()
 
 
-@pytest.mark.parametrize("batch", [CHECKER.are_free, ARM.fk_batch])
-def test_batches_of_millions_of_rows_can_be_interrupted(batch: Callable[..., Any]) -> None:
-    rows = np.tile(Q, (3_000_000, 1))
+MAP = sdf_map()
+AT_THE_MAP = MAP.points()[0][0]
+
+
+@pytest.mark.parametrize(
+    ("batch", "row"),
+    [
+        (CHECKER.are_free, Q),
+        (ARM.fk_batch, Q),
+        (MAP.query, AT_THE_MAP),
+        (lambda directions: MAP.cast_rays(np.zeros_like(directions), directions), AT_THE_MAP),
+    ],
+)
+def test_batches_of_millions_of_rows_can_be_interrupted(batch: Callable[..., Any], row: np.ndarray) -> None:
+    rows = np.tile(row, (3_000_000, 1))
     timer = interrupt_soon(0.05)
     with pytest.raises(KeyboardInterrupt):
         for _ in range(100):  # a fast machine may be done with the first

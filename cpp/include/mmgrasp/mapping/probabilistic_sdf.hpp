@@ -144,12 +144,13 @@ class MMGRASP_EXPORT ProbabilisticSdf {
 
   /// Mean and standard deviation at the columns of `points` (3, n), interpolated between voxels. Throws InvalidInput on
   /// a point that is not finite. `threads` = 0 means all.
-  SdfValues query(const Eigen::Matrix3Xd& points, int threads = 0) const;
+  SdfValues query(const Eigen::Ref<const Eigen::Matrix3Xd>& points, int threads = 0) const;
 
   /// The first surface from the front along each ray origin + t direction, t >= 0 (columns of both). Unknown space does
   /// not stop a ray. Throws InvalidInput on numbers of columns that differ, on values that are not finite and on
   /// directions of zero.
-  SdfHits cast_rays(const Eigen::Matrix3Xd& origins, const Eigen::Matrix3Xd& directions, int threads = 0) const;
+  SdfHits cast_rays(const Eigen::Ref<const Eigen::Matrix3Xd>& origins,
+                    const Eigen::Ref<const Eigen::Matrix3Xd>& directions, int threads = 0) const;
 
   /// The zero level by marching cubes, consistent across blocks: closed where the surface was seen all around.
   /// Empty when the monitor ended it.

@@ -1,6 +1,8 @@
 #include "mapping/sdf/cast_rays.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "mapping/sdf/block_order.hpp"
 #include "mapping/sdf/ray_march.hpp"
@@ -42,19 +44,33 @@ double sigma_at(SdfSampler& sampler, const Eigen::Vector3d& hit, const Eigen::Ve
 
 /// Fetches what is read and written of a ray. Inlined, since GCC removes calls of functions that do nothing but
 /// prefetch.
-[[gnu::always_inline]] inline void prefetch(const Eigen::Matrix3Xd& origins, const Eigen::Matrix3Xd& directions,
-                                            Eigen::Index i, const SdfHits& out) {
+[[gnu::always_inline]] inline void prefetch(const Eigen::Ref<const Eigen::Matrix3Xd>& origins,
+                                            const Eigen::Ref<const Eigen::Matrix3Xd>& directions, Eigen::Index i,
+                                            const SdfHits& out) {
   const auto* const point = out.point.data() + 3 * i;
   const auto* const normal = out.normal.data() + 3 * i;
   const void* const all[] = {
-      origins.data() + 3 * i, directions.data() + 3 * i, point, normal, &out.distance[i], &out.sigma[i], &out.hit[i]};
+      origins.col(i).data(), directions.col(i).data(), point, normal, &out.distance[i], &out.sigma[i], &out.hit[i]};
   for (const void* const each : all) __builtin_prefetch(each);
+}
+
+/// Entries of rays that do not hit.
+void meet_nothing(Eigen::Index first, Eigen::Index last, SdfHits& out) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  const Eigen::Index count = last - first;
+  std::fill(out.hit.begin() + first, out.hit.begin() + last, std::uint8_t{0});
+  out.distance.segment(first, count).setConstant(kNaN);
+  out.point.middleCols(first, count).setConstant(kNaN);
+  out.normal.middleCols(first, count).setConstant(kNaN);
+  out.sigma.segment(first, count).setConstant(kNaN);
 }
 
 }  // namespace
 
-void cast_rays(const SdfGrid& grid, CrossingCells& crossing, const Eigen::Matrix3Xd& origins,
-               const Eigen::Matrix3Xd& directions, Eigen::Index first, Eigen::Index last, SdfHits& out) {
+void cast_rays(const SdfGrid& grid, CrossingCells& crossing, const Eigen::Ref<const Eigen::Matrix3Xd>& origins,
+               const Eigen::Ref<const Eigen::Matrix3Xd>& directions, Eigen::Index first, Eigen::Index last,
+               SdfHits& out) {
+  meet_nothing(first, last, out);
   SdfSampler sampler(grid);
   std::vector<BlockOnRay> met(last - first);
   std::vector<int> block(last - first);

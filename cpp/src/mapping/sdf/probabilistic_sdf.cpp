@@ -21,17 +21,18 @@ namespace {
 
 // Numbers of points and rays in one work item.
 constexpr Eigen::Index kFewestPoints = 4096, kMostPoints = 1 << 20, kFewestRays = 1024, kMostRays = 1 << 16;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// Calls work(first, last) for pieces of [0, count) of nearly the same size, as many for each thread.
+/// Calls work(first, last) for pieces of [0, count). Later ones are smaller: some rays cost a hundred times what others
+/// do, and threads are to end together.
 template <typename Work>
 void by_pieces(Eigen::Index count, Eigen::Index fewest, Eigen::Index most, int threads, const Work& work) {
-  const Eigen::Index workers = resolve_threads(threads), rounds = (count + most * workers - 1) / (most * workers);
-  const Eigen::Index piece = std::max(fewest, count / std::max<Eigen::Index>(1, rounds * workers) + 1);
-  parallel_for((count + piece - 1) / piece, threads, [&](std::size_t item, int) {
-    const Eigen::Index first = static_cast<Eigen::Index>(item) * piece;
-    work(first, std::min(count, first + piece));
-  });
+  const Eigen::Index shares = 2 * resolve_threads(threads);
+  std::vector<Eigen::Index> ends{0};
+  while (ends.back() < count) {
+    const Eigen::Index left = count - ends.back();
+    ends.push_back(ends.back() + std::min(left, std::clamp(left / shares, fewest, most)));
+  }
+  parallel_for(ends.size() - 1, threads, [&](std::size_t item, int) { work(ends[item], ends[item + 1]); });
 }
 
 }  // namespace
@@ -71,7 +72,7 @@ IntegrationReport ProbabilisticSdf::integrate(const DepthImage& image, const Dep
   return detail::integrate_frame(*grid_, image, camera, uncertainty);
 }
 
-SdfValues ProbabilisticSdf::query(const Eigen::Matrix3Xd& points, int threads) const {
+SdfValues ProbabilisticSdf::query(const Eigen::Ref<const Eigen::Matrix3Xd>& points, int threads) const {
   require_positions(points, "point");
   SdfValues out;
   out.mean.resize(points.cols());
@@ -82,8 +83,8 @@ SdfValues ProbabilisticSdf::query(const Eigen::Matrix3Xd& points, int threads) c
   return out;
 }
 
-SdfHits ProbabilisticSdf::cast_rays(const Eigen::Matrix3Xd& origins, const Eigen::Matrix3Xd& directions,
-                                    int threads) const {
+SdfHits ProbabilisticSdf::cast_rays(const Eigen::Ref<const Eigen::Matrix3Xd>& origins,
+                                    const Eigen::Ref<const Eigen::Matrix3Xd>& directions, int threads) const {
   require(origins.cols() == directions.cols(), "directions", std::to_string(directions.cols()),
           "must be as many as origins, " + std::to_string(origins.cols()));
   require_positions(origins, "origin");
@@ -93,11 +94,11 @@ SdfHits ProbabilisticSdf::cast_rays(const Eigen::Matrix3Xd& origins, const Eigen
   }
   const Eigen::Index count = origins.cols();
   SdfHits out;
-  out.hit.assign(count, 0);
-  out.distance.setConstant(count, kNaN);
-  out.point.setConstant(3, count, kNaN);
-  out.normal.setConstant(3, count, kNaN);
-  out.sigma.setConstant(count, kNaN);
+  out.hit.resize(count);
+  out.distance.resize(count);
+  out.point.resize(3, count);
+  out.normal.resize(3, count);
+  out.sigma.resize(count);
   const std::shared_ptr<detail::CrossingCells> crossing = grid_->crossing_cells();
   by_pieces(count, kFewestRays, kMostRays, threads, [&](Eigen::Index first, Eigen::Index last) {
     detail::cast_rays(*grid_, *crossing, origins, directions, first, last, out);

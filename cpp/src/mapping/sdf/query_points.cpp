@@ -32,7 +32,7 @@ void write(const Sample& sample, Eigen::Index i, SdfValues& out) {
 /// What a work item is: some of the points, and where their answers go.
 struct Piece {
   const SdfGrid& grid;
-  const Eigen::Matrix3Xd& points;
+  const Eigen::Ref<const Eigen::Matrix3Xd>& points;
   Eigen::Index first, last;
   SdfValues& out;
 };
@@ -87,8 +87,8 @@ void by_group(const Piece& piece) {
 
 }  // namespace
 
-void query_points(const SdfGrid& grid, const Eigen::Matrix3Xd& points, Eigen::Index first, Eigen::Index last,
-                  SdfValues& out) {
+void query_points(const SdfGrid& grid, const Eigen::Ref<const Eigen::Matrix3Xd>& points, Eigen::Index first,
+                  Eigen::Index last, SdfValues& out) {
   const Piece piece{grid, points, first, last, out};
   const bool many = last - first >= kFewestOfBlock * static_cast<Eigen::Index>(grid.keys.size());
   many ? by_block(piece) : by_group(piece);

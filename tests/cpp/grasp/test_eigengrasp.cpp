@@ -159,6 +159,38 @@ TEST(Eigengrasp, PinchOfABoxFingerByFinger) {
   }
 }
 
+/// Whether two grasps stand near each other, come the same way and close along opposite axes.
+bool are_half_a_turn_apart(const HandModel& model, const Grasp& a, const Grasp& b) {
+  const auto axis = [&](const Grasp& grasp) -> Vector3d {
+    return grasp.T_object_hand.linear() * closing_line(model.pads(std::vector<double>(model.groups(), 1.0))).axis;
+  };
+  const auto approach = [&](const Grasp& grasp) -> Vector3d {
+    return grasp.T_object_hand.linear() * model.hand().approach;
+  };
+  return (a.T_object_hand.translation() - b.T_object_hand.translation()).norm() < 0.03 &&
+         approach(a).dot(approach(b)) > 0.95 && axis(a).dot(axis(b)) < -0.95;
+}
+
+TEST(Eigengrasp, ThumbOnEitherSideIsAnotherGraspAndParallelFingersAreNot) {
+  const ProbabilisticSdf map = scan({table_plane(), {Box{Vector3d(0.05, 0.16, 0.09)}, at(0, 0, 0.045, 0.4)}});
+  SynthesisOptions options;
+  options.table = 0.0;
+  options.threads = 1;
+  options.samples = 800;
+  options.max_grasps = 400;
+  options.min_distance = 0.03;
+  const auto pairs = [&](const HandModel& model) {
+    const GraspSynthesis found = synthesize_grasps(map, model, options);
+    EXPECT_EQ(found.outcome, Outcome::solved) << found.summary();
+    int count = 0;
+    for (std::size_t i = 0; i < found.grasps.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j) count += are_half_a_turn_apart(model, found.grasps[i], found.grasps[j]);
+    return count;
+  };
+  EXPECT_GT(pairs(*make_hand_model(eigengrasp_hand(sdh(), "tcp", kGroups, kCylindrical), sdh())), 0);
+  EXPECT_EQ(pairs(*make_hand_model(test_hand())), 0);
+}
+
 TEST(Eigengrasp, ThreeFingersHoldABar) {
   // Long enough for the two fingers 66 mm apart.
   const Vector3d size(0.05, 0.16, 0.09);

@@ -34,10 +34,11 @@ struct MMGRASP_EXPORT SynthesisOptions {
   double sigmas = 2;                          ///< Standard deviations of the surface kept free around the hand; >= 0.
   double margin = 0.002;                      ///< Kept free beside them, and above the table [m]; >= 0.
   double approach_distance = 0.05;            ///< Straight way in that must be free [m]; >= 0.
-  double min_distance = 0.01;                 ///< Between returned grasps that close along about one axis [m]; >= 0.
-  int max_grasps = 20;                        ///< Best kept; > 0.
-  int threads = 0;                            ///< 0: all. The answer does not depend on it.
-  unsigned seed = 1;                          ///< Same seed, same grasps.
+  /// Between returned grasps that close along about one axis, of hands that are not parallel the same way [m]; >= 0.
+  double min_distance = 0.01;
+  int max_grasps = 20;  ///< Best kept; > 0.
+  int threads = 0;      ///< 0: all. The answer does not depend on it.
+  unsigned seed = 1;    ///< Same seed, same grasps.
   SuccessOptions success;
   ContactPatchOptions patch;
   void check() const;

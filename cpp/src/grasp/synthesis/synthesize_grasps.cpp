@@ -153,9 +153,11 @@ class Search {
     return order;
   }
 
+  /// Two parallel fingers may be exchanged; of other hands half a turn is another grasp.
   bool near(const EvaluatedGrasp& a, const EvaluatedGrasp& b) const {
+    const double along = evaluator_.closing_axis(a).dot(evaluator_.closing_axis(b));
     return (a.T_world_hand.translation() - b.T_world_hand.translation()).norm() < options_.min_distance &&
-           std::abs(evaluator_.closing_axis(a).dot(evaluator_.closing_axis(b))) > std::cos(kSameAxis) &&
+           (hand_.parallel() ? std::abs(along) : along) > std::cos(kSameAxis) &&
            evaluator_.approach(a).dot(evaluator_.approach(b)) > std::cos(kSameAxis);
   }
 

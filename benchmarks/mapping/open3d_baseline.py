@@ -23,7 +23,8 @@ ROUNDS = 3
 def fuse(path: Path, voxel: float, truncation: float, mesh_path: Path) -> None:
     frames = Frames.load(path)
     fx, fy, cx, cy = frames.intrinsics
-    intrinsics = core.Tensor([[fx, 0, cx], [0, fy, cy], [0, 0, 1]], core.float64)
+    # Integers are the middles of our pixels. Open3D cuts off what follows the point: they are its pixels' corners.
+    intrinsics = core.Tensor([[fx, 0, cx + 0.5], [0, fy, cy + 0.5], [0, 0, 1]], core.float64)
     farthest = float(frames.reach[1])
     images = [o3d.t.geometry.Image(core.Tensor(depth)) for depth in frames.depth]
     extrinsics = [core.Tensor(np.linalg.inv(pose)) for pose in frames.poses]

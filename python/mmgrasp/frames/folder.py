@@ -266,6 +266,6 @@ def _advice(folder: Path, sensor: Sensor) -> str:
     where = sensor.place or printable(str(folder))
     return (
         f"{where}: intrinsics of sensor '{sensor.name}' are missing; looked for {searched()} there and in the folder around it. "
-        f"Write them into {SENSORS_FILE}, with the numbers of your camera:\nversion: {1}\nsensors:\n  {sensor.name}:\n"
+        f"Write them into {SENSORS_FILE}, with the numbers of your camera:\nversion: 1\nsensors:\n  {sensor.name}:\n"
         "    intrinsics: {fx: 525, fy: 525, cx: 319.5, cy: 239.5}"
     )

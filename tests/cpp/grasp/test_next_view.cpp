@@ -90,15 +90,40 @@ TEST(NextView, LooksAtTheOtherSide) {
   const ViewCandidate& best = found.candidates[0];
   EXPECT_GT(best.T_world_camera.translation().y(), 0.05);
   EXPECT_GT(best.unseen, 0.2);
-  for (std::size_t i = 1; i < found.candidates.size(); ++i) {
-    EXPECT_LE(found.candidates[i].probability, found.candidates[i - 1].probability + 0.011);
-  }
+  const auto score = [](const ViewCandidate& c) { return c.probability + c.certain; };
+  for (std::size_t i = 1; i < found.candidates.size(); ++i)
+    EXPECT_LE(score(found.candidates[i]), score(found.candidates[i - 1]));
   // Each looks at the object from the given distance, above the horizontal.
   for (const ViewCandidate& each : found.candidates) {
     const Pose& T = each.T_world_camera;
     EXPECT_GT(T.translation().z(), 0.1);
     const Vector3d ahead = T * Vector3d(0, 0, options.distance);
     EXPECT_LT(ahead.head<2>().norm(), 0.05);
+  }
+}
+
+/// Another body within the hand's reach, which no view hides: what would be certain of it says nothing of the object.
+TEST(NextView, ANeighbourDoesNotCount) {
+  const PlacedShape box{Box{{0.08, 0.04, 0.07}}, at(0, 0, 0.035)},
+      neighbour{Box{{0.06, 0.20, 0.02}}, at(0.24, 0, 0.01)};
+  NextViewOptions options = options_on_table();
+  options.synthesis.object = Eigen::AlignedBox3d(Vector3d(-0.08, -0.08, 0), Vector3d(0.08, 0.08, 0.12));
+  options.candidates = 12;
+  std::vector<ViewCandidate> alone, beside;
+  for (const bool with : {false, true}) {
+    std::vector<PlacedShape> scene{table_plane(), box};
+    if (with) scene.push_back(neighbour);
+    ProbabilisticSdf map(coarse());
+    Rng rng(1);
+    look(map, scene, look_at({0.1, -0.33, 0.12}, {0.1, 0, 0.035}), rng);
+    (with ? beside : alone) = next_view(map, test_hand(), noisy_camera(), options).candidates;
+  }
+  ASSERT_EQ(alone.size(), beside.size());
+  for (const ViewCandidate& one : alone) {
+    for (const ViewCandidate& other : beside) {
+      if ((one.T_world_camera.translation() - other.T_world_camera.translation()).norm() > 0.02) continue;
+      EXPECT_NEAR(one.certain, other.certain, 0.1) << one.T_world_camera.translation().transpose();
+    }
   }
 }
 

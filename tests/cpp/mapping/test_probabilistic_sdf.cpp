@@ -57,7 +57,6 @@ Matrix3Xd random_points(int count, double spread) {
 
 }  // namespace
 
-/// P3 (4.16), (4.17) against weighted least squares over all frames at once, at voxels, in closed form.
 TEST(ProbabilisticSdf, MeshOfABoxIsThatOfItsCells) {
   ProbabilisticSdf sdf;
   const DepthCamera camera = small_camera();
@@ -85,6 +84,7 @@ TEST(ProbabilisticSdf, MeshOfABoxIsThatOfItsCells) {
   EXPECT_TRUE(sdf.mesh(Eigen::AlignedBox3d(Eigen::Vector3d(5, 5, 5), Eigen::Vector3d(6, 6, 6))).mesh->vertices.empty());
 }
 
+/// P3 (4.16), (4.17) against weighted least squares over all frames at once, at voxels, in closed form.
 TEST(ProbabilisticSdf, RecursionIsBatchLeastSquares) {
   ProbabilisticSdf sdf;
   const double depths[] = {0.300, 0.301, 0.2985, 0.3022, 0.2991}, sigmas[] = {0.001, 0.002, 0.0005, 0.003, 0.0012};
@@ -486,6 +486,39 @@ TEST(ProbabilisticSdf, PointsAnswerTheSameHoweverMany) {
   }
 }
 
+TEST(ProbabilisticSdf, CroppedMapsAnswerTheSameAndTakeFrames) {
+  DepthCamera fine = small_camera(0.0005), biased = small_camera(0.001);
+  biased.name = "biased";
+  biased.systematic = 0.0005;
+  ProbabilisticSdf whole;
+  for (const DepthImage& frame : noisy_sphere_frames(6, fine, 0.05)) whole.integrate(frame, fine);
+  for (int k = 0; k < 3; ++k) whole.integrate(wall(biased, 0.3), biased);
+  const Eigen::AlignedBox3d box(Vector3d(-0.02, -0.06, -0.01), Vector3d(0.06, 0.03, 0.06));
+  ProbabilisticSdf part = whole.cropped(box);
+  EXPECT_LT(2 * part.blocks(), whole.blocks());
+  EXPECT_EQ(part.frames(), whole.frames());
+  Matrix3Xd points = random_points(20'000, 0.06);
+  for (Eigen::Index i = 0; i < points.cols(); ++i)
+    points.col(i) = points.col(i).cwiseMax(box.min()).cwiseMin(box.max());  // many on its faces and edges
+  int known = 0;
+  const auto expect_same = [&] {
+    const SdfValues all = whole.query(points), own = part.query(points);
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+      ASSERT_EQ(own.known[i], all.known[i]) << i;
+      if (!own.known[i]) continue;
+      ++known;
+      ASSERT_EQ(own.mean[i], all.mean[i]) << i;
+      ASSERT_EQ(own.sigma[i], all.sigma[i]) << i;
+    }
+  };
+  expect_same();
+  EXPECT_GT(known, 500);
+  const std::size_t blocks = whole.blocks();
+  for (ProbabilisticSdf* map : {&whole, &part}) map->integrate(wall(fine, 0.25), fine);
+  expect_same();
+  EXPECT_GE(whole.blocks(), blocks);
+}
+
 TEST(ProbabilisticSdf, EmptyMapsAnswer) {
   const ProbabilisticSdf sdf;
   EXPECT_FALSE(sdf.query(Vector3d(0, 0, 0)).known[0]);
@@ -494,4 +527,5 @@ TEST(ProbabilisticSdf, EmptyMapsAnswer) {
   EXPECT_EQ(sdf.points().point.cols(), 0);
   EXPECT_TRUE(sdf.bounds().isEmpty());
   EXPECT_EQ(sdf.query(Matrix3Xd(3, 0)).mean.size(), 0);
+  EXPECT_EQ(sdf.cropped({Vector3d(0, 0, 0), Vector3d(1, 1, 1)}).blocks(), 0u);
 }

@@ -23,10 +23,10 @@ class World;
 
 /// What synthesize_grasps() may grasp, how much room the hand keeps, and how many grasps are tried for it.
 struct MMGRASP_EXPORT SynthesisOptions {
-  int samples = 200;            ///< Grasps evaluated: two thirds spread over the object, the rest around the best; > 0.
-  int refined = 8;              ///< Grasps of the first search around which the second goes on; > 0.
-  double shift = 0.012;         ///< Farthest that the second search shifts a grasp in the plane of its pads [m]; >= 0.
-  double max_tilt = 1.05;       ///< Largest angle of the approach from straight down, in [0, pi] [rad].
+  int samples = 200;       ///< Grasps evaluated: two thirds spread over the object, the rest around the best; > 0.
+  int refined = 8;         ///< Grasps of the first search around which the second goes on; > 0.
+  double shift = 0.012;    ///< Farthest that the second search shifts a grasp in the plane of its pads [m]; >= 0.
+  double max_tilt = 1.05;  ///< Largest angle of the approach from straight down, in [0, 3.2] [rad]; from pi on any.
   std::optional<double> table;  ///< Height of the level table that the object stands on [m]; none: there is none.
   /// What the map has up to this, or to `sigmas` of its own, above the table is the table [m]; >= 0.
   double table_tolerance = 0.004;

@@ -176,6 +176,10 @@ class MMGRASP_EXPORT ProbabilisticSdf {
   std::shared_ptr<const DistanceField> distance_field(double sigmas = 2.0,
                                                       UnknownSpace unknown = UnknownSpace::unknown) const;
 
+  /// A copy of the blocks around the box [m]: queries within it and rays from within it to what they meet there give
+  /// the same.
+  ProbabilisticSdf cropped(const Eigen::AlignedBox3d& box) const;
+
   int frames() const;                  ///< Integrated so far.
   std::size_t blocks() const;          ///< Blocks of 8 x 8 x 8 voxels.
   std::size_t memory() const;          ///< Size of the blocks and their index [bytes].

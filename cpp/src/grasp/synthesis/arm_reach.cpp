@@ -1,7 +1,7 @@
 // make_arm_reach: inverse kinematics as grasp synthesis asks for it.
 #include <memory>
 #include <string>
-#include <utility>
+#include <tuple>
 
 #include "mmgrasp/collision/collision_ik.hpp"
 #include "mmgrasp/core/error.hpp"
@@ -10,19 +10,11 @@
 namespace mmgrasp {
 namespace {
 
-/// What most descents of a failed solve ended on.
+/// Why a solve failed: what most of the configurations that reach the pose touch, or else what most descents ended on.
 Rejection main_cause(const Rejections& rejections) {
-  std::size_t most = 0;
-  Rejection cause = Rejection::unreachable;
-  for (const auto& [count, of] : {std::pair{rejections.scene, Rejection::scene},
-                                  {rejections.self_collision, Rejection::self_collision},
-                                  {rejections.limits, Rejection::limits}}) {
-    if (count <= most) continue;
-    most = count;
-    cause = of;
-  }
-  return rejections.scene + rejections.self_collision > 0 || most > rejections.unreachable ? cause
-                                                                                           : Rejection::unreachable;
+  const auto [scene, self, limits] = std::tuple(rejections.scene, rejections.self_collision, rejections.limits);
+  if (scene + self > 0) return scene >= self ? Rejection::scene : Rejection::self_collision;
+  return limits > rejections.unreachable ? Rejection::limits : Rejection::unreachable;
 }
 
 }  // namespace

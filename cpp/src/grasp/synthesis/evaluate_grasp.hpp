@@ -36,7 +36,7 @@ class GraspEvaluator {
                        double width) const;
   /// Casts the pads' rays, centres and opens the hand, and rates it; sets all but `q`.
   void evaluate(EvaluatedGrasp& grasp) const;
-  /// Checks what evaluate() left out: the way in and, for parallel hands, closing; casts the rays again. Sets
+  /// Checks what evaluate() left out: the way in and closing; casts the rays again. Sets
   /// `verdict`, `patches` and `success`.
   void confirm(EvaluatedGrasp& grasp) const;
   /// A grasp next to a good one: shifted in the plane of the pads, every second one turned to face its patches.

@@ -17,7 +17,6 @@ using Eigen::Vector3d;
 
 constexpr int kTurns = 90;                 // of the box, over a quarter turn
 constexpr std::size_t kMostPoints = 2000;  // that the box is fitted to
-constexpr double kReach = 0.3;             // around an object's box that a hand may take up [m]
 constexpr double kNormalRadius = 0.006;    // over which normals are averaged [m]
 constexpr int kLeastPiece = 50;            // vertices of the smallest body
 constexpr std::size_t kLeastPoints = 10;   // fewer are no surface that a pad could meet
@@ -28,8 +27,8 @@ SdfMesh surface_of(const ProbabilisticSdf& map, const SynthesisOptions& options)
   Eigen::AlignedBox3d within = map.bounds();
   if (within.isEmpty()) return map.mesh();
   if (options.object)
-    within = within.intersection(
-        {options.object->min() - Vector3d::Constant(kReach), options.object->max() + Vector3d::Constant(kReach)});
+    within = within.intersection({options.object->min() - Vector3d::Constant(kHandReach),
+                                  options.object->max() + Vector3d::Constant(kHandReach)});
   if (options.table) within.min().z() = std::max(within.min().z(), *options.table + options.table_tolerance);
   return map.mesh(within);
 }
@@ -119,6 +118,7 @@ MapSurface::MapSurface(const ProbabilisticSdf& map, const SynthesisOptions& opti
     if ((options.object && !options.object->contains(points[i])) || normals[i].isZero(0)) continue;
     object.push_back(points[i]);
     object_normal.push_back(normals[i]);
+    object_sigma.push_back(found.sigma[i]);
     bounds.extend(points[i]);
   }
   require(object.size() >= kLeastPoints,

@@ -12,6 +12,9 @@
 
 namespace mmgrasp::detail {
 
+/// Around an object's box that a hand may take up [m].
+inline constexpr double kHandReach = 0.3;
+
 /// The map's surface points apart: what is to be grasped, and all that a hand may touch. Points of the table are in
 /// neither, the table being a plane, nor are pieces of surface too small to be a body, which noise leaves in the air.
 class MMGRASP_EXPORT MapSurface {
@@ -23,6 +26,7 @@ class MMGRASP_EXPORT MapSurface {
   Eigen::Vector3d mean_normal(std::size_t i) const;
 
   std::vector<Eigen::Vector3d> object, object_normal;
+  std::vector<double> object_sigma;  ///< [m]
   std::vector<Eigen::Vector3d> scene,
       scene_normal;                 ///< The object's points among them; a normal is zero where there is none.
   std::vector<double> scene_sigma;  ///< [m]

@@ -123,15 +123,25 @@ class ImaginedScene {
   const RayCaster hull_;
 };
 
+/// What of the map decides about grasps of the object: frames are imagined in copies of it.
+ProbabilisticSdf around(const ProbabilisticSdf& map, const detail::MapSurface& surface,
+                        const SynthesisOptions& options) {
+  Eigen::AlignedBox3d box;
+  if (options.object) box.extend(*options.object);
+  for (const Vector3d& point : surface.object) box.extend(point);
+  const Vector3d reach = Vector3d::Constant(detail::kHandReach);
+  return map.cropped({box.min() - reach, box.max() + reach});
+}
+
 double best_of(const GraspSynthesis& found) {
   return found.grasps.empty() ? 0 : found.grasps.front().quality;
 }
 
-/// How much of the surface is known, and how well: points of the object, each 1 where it is certain and 0 at max_sigma.
+/// How much of the object's surface is known, and how well: its points, each 1 where it is certain and 0 at max_sigma.
 double certain_points(const ProbabilisticSdf& map, const SynthesisOptions& options) {
   const detail::MapSurface surface(map, options);
   double sum = 0;
-  for (const double sigma : surface.scene_sigma) sum += std::max(0.0, 1 - sigma / options.success.max_sigma);
+  for (const double sigma : surface.object_sigma) sum += std::max(0.0, 1 - sigma / options.success.max_sigma);
   return sum;
 }
 
@@ -184,6 +194,7 @@ NextView next_view(const ProbabilisticSdf& map, const HandModel& hand, const Dep
       out.arm.add(cause);
     }
   }
+  const ProbabilisticSdf nearby = around(map, surface, options.synthesis);
   const ImaginedScene scene(map, surface, options.synthesis.table);
   Monitor quiet;
   quiet.stop = monitor.stop;
@@ -192,7 +203,7 @@ NextView next_view(const ProbabilisticSdf& map, const HandModel& hand, const Dep
     ViewCandidate& candidate = out.candidates[i];
     const DepthImage image = scene.seen_from(candidate.T_world_camera, eye, candidate.unseen);
     for (int draw = 0; draw < options.draws && !monitor.stopped(); ++draw) {
-      imagine(map, hand, image, eye, options, monitor, Rng(options.seed, i * options.draws + draw), candidate);
+      imagine(nearby, hand, image, eye, options, monitor, Rng(options.seed, i * options.draws + draw), candidate);
     }
   };
   if (!parallel_for(out.candidates.size(), options.threads, rate, monitor, "next view") || monitor.stopped()) {

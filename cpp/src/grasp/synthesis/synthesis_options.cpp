@@ -44,7 +44,7 @@ void SynthesisOptions::check() const {
   require(samples > 0 && samples <= 1000000, "samples", samples, "must be from 1 to 1000000");
   require_count(refined, "refined", 1, 1'000'000);
   not_negative(shift, "shift");
-  require(max_tilt >= 0 && max_tilt <= 3.2, "max_tilt", max_tilt, "must be in [0, pi] [rad]");
+  require(max_tilt >= 0 && max_tilt <= 3.2, "max_tilt", max_tilt, "must be in [0, 3.2] [rad]");
   if (table) require_number(*table, "table", "m");
   not_negative(table_tolerance, "table_tolerance");
   if (object) {

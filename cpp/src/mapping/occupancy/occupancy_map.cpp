@@ -101,10 +101,6 @@ class UnknownCells {
   Leaves& leaves_;
 };
 
-}  // namespace
-
-namespace {
-
 /// Adds a frame as octomap's insertPointCloud() does, with one ray for each cell that holds a pixel, but piece by
 /// piece: all cells are known, and Ctrl-C was heard, before the first one changes.
 void cast(octomap::OcTree& tree, const octomap::Pointcloud& ends, const octomap::point3d& eye, double longest) {

@@ -115,7 +115,7 @@ class FrameIntegration {
         block_(kBlockSide * grid.options.voxel),
         coarse_(frame, image.camera) {
     T_camera_world_ = image.T_world_camera.inverse(Eigen::Isometry);
-    layer_ = find_layer();
+    layer_ = grid_.find_layer(camera_);
   }
 
   /// Blocks near this frame's surface. Throws InvalidInput when they do not fit.
@@ -196,17 +196,6 @@ class FrameIntegration {
   }
 
  private:
-  int find_layer() const {
-    const bool common = camera_.systematic == 0 && camera_.systematic_scale == 0;
-    for (std::size_t k = 0; k < grid_.cameras.size(); ++k) {
-      const DepthCamera& known = grid_.cameras[k];
-      if (known.name == camera_.name || (common && known.systematic == 0 && known.systematic_scale == 0)) {
-        return grid_.camera_layer[k];
-      }
-    }
-    return static_cast<int>(grid_.layers.size());
-  }
-
   /// Box around the bands of a tile's pixels, with half a pixel around.
   Eigen::AlignedBox3d tile_box(int u0, int v0, int stride) const {
     Eigen::AlignedBox3d box;

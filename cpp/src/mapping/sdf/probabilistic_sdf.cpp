@@ -106,6 +106,10 @@ SdfHits ProbabilisticSdf::cast_rays(const Eigen::Ref<const Eigen::Matrix3Xd>& or
   return out;
 }
 
+ProbabilisticSdf ProbabilisticSdf::cropped(const Eigen::AlignedBox3d& box) const {
+  return ProbabilisticSdf(grid_->cropped(box));
+}
+
 SdfMesh ProbabilisticSdf::mesh(const Monitor& monitor) const {
   return detail::extract_mesh(*grid_, nullptr, monitor);
 }

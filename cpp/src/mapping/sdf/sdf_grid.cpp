@@ -48,12 +48,35 @@ SdfGrid::SdfGrid(const SdfGrid& other)
   }
 }
 
+std::shared_ptr<SdfGrid> SdfGrid::cropped(const Eigen::AlignedBox3d& box) const {
+  const auto out = std::make_shared<SdfGrid>(options);
+  out->cameras = cameras;
+  out->camera_layer = camera_layer;
+  out->frames = frames;
+  out->key_frame = key_frame;
+  out->layers.resize(layers.size());
+  const Eigen::Vector3d voxel = Eigen::Vector3d::Constant(options.voxel);
+  const Eigen::AlignedBox3d grown(box.min() - voxel, box.max() + voxel);
+  for (std::size_t block = 0; block < keys.size(); ++block) {
+    if (!grown.intersects(box_of(keys[block]))) continue;
+    const int copy = out->add(keys[block]);
+    out->correlation[copy] = correlation[block];
+    for (std::size_t l = 0; l < layers.size(); ++l) {
+      if (layers[l][block]) out->layers[l][copy] = std::make_unique<VoxelBlock>(*layers[l][block]);
+    }
+  }
+  return out;
+}
+
+Eigen::AlignedBox3d SdfGrid::box_of(const BlockKey& key) const {
+  const Eigen::Vector3d first = kBlockSide * options.voxel * Eigen::Vector3d(key.x, key.y, key.z);
+  return {first, first + Eigen::Vector3d::Constant((kBlockSide - 1) * options.voxel)};
+}
+
 int SdfGrid::add(const BlockKey& key) {
   const int block = static_cast<int>(keys.size());
   keys.push_back(key);
-  const Eigen::Vector3d first = kBlockSide * options.voxel * Eigen::Vector3d(key.x, key.y, key.z);
-  bounds.extend(first);
-  bounds.extend(first + Eigen::Vector3d::Constant((kBlockSide - 1) * options.voxel));
+  bounds.extend(box_of(key));
   correlation.push_back({0, 0, 0});
   for (auto& layer : layers) layer.emplace_back();
   table.insert(key.packed(), block);
@@ -84,15 +107,21 @@ void SdfGrid::check_camera(const DepthCamera& camera) const {
   }
 }
 
-int SdfGrid::layer_of(const DepthCamera& camera) {
-  for (std::size_t k = 0; k < cameras.size(); ++k) {
-    if (cameras[k].name == camera.name) return camera_layer[k];
-  }
+int SdfGrid::find_layer(const DepthCamera& camera) const {
   const bool common = camera.systematic == 0 && camera.systematic_scale == 0;
-  int layer = static_cast<int>(layers.size());
-  for (std::size_t k = 0; common && k < cameras.size(); ++k) {
-    if (cameras[k].systematic == 0 && cameras[k].systematic_scale == 0) layer = camera_layer[k];
+  for (std::size_t k = 0; k < cameras.size(); ++k) {
+    const DepthCamera& known = cameras[k];
+    if (known.name == camera.name || (common && known.systematic == 0 && known.systematic_scale == 0))
+      return camera_layer[k];
   }
+  return static_cast<int>(layers.size());
+}
+
+int SdfGrid::layer_of(const DepthCamera& camera) {
+  for (const DepthCamera& known : cameras) {
+    if (known.name == camera.name) return find_layer(camera);
+  }
+  const int layer = find_layer(camera);
   if (layer == static_cast<int>(layers.size())) {
     layers.emplace_back();
     layers.back().resize(keys.size());

@@ -112,10 +112,16 @@ struct SdfGrid {
   SdfGrid(const SdfGrid& other);
   SdfGrid& operator=(const SdfGrid&) = delete;
 
+  /// A copy of the blocks that the box [m] touches when it is grown by a voxel.
+  std::shared_ptr<SdfGrid> cropped(const Eigen::AlignedBox3d& box) const;
   int find(const BlockKey& key) const { return table.find(key.packed()); }
+  /// Box around a block's voxels [m].
+  Eigen::AlignedBox3d box_of(const BlockKey& key) const;
   /// Adds an empty block of no layer.
   int add(const BlockKey& key);
-  /// The camera's layer: the common one without a systematic error. Adds camera and layer when new.
+  /// The camera's layer: the common one without a systematic error; as many as there are layers: it is new.
+  int find_layer(const DepthCamera& camera) const;
+  /// The same, camera and layer added when new.
   int layer_of(const DepthCamera& camera);
   /// Throws InvalidInput when another camera has this name.
   void check_camera(const DepthCamera& camera) const;

@@ -157,6 +157,28 @@ def test_less_room_around_uncertain_surfaces_is_offered(scanned: Path, capsys: p
         main(["grasp", str(scanned), "--gripper", GRIPPER, "--sigmas", "-1"])
 
 
+def test_where_two_deviations_leave_nothing_less_is_kept_free(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Cameras off by 8 mm: sigma is some 5 mm. Each object gets the first of 2, 1 and 0 with a grasp, as if it had been asked for."""
+    (tmp_path / "frames").mkdir()
+    write_frames(tmp_path / "frames", "npz", 18)
+    write_sensors(tmp_path / "frames", "pose_error: {translation: 0.008, rotation: 0.003}")
+    assert run(tmp_path / "frames", tmp_path / "map", "--voxel", "0.003") == 0
+    rows = {row["name"]: row for row in grasps(tmp_path / "map", capsys)["objects"]}
+    assert {row["sigmas"] for row in rows.values()} == {0.0, 1.0}
+    for name, row in rows.items():
+        said = (
+            f"; kept free: {row['sigmas']:g} standard deviations of the map; with {row['sigmas'] + 1:g} there is none"
+        )
+        assert row["summary"].endswith(said)
+        asked = ("--object", name, "--sigmas")
+        (same,) = grasps(tmp_path / "map", capsys, *asked, f"{row['sigmas']:g}")["objects"]
+        assert same["grasps"] == row["grasps"] and said not in same["summary"]
+        for more in range(int(row["sigmas"]) + 1, 3):
+            assert main(["grasp", str(tmp_path / "map"), "--gripper", GRIPPER, *asked, str(more)]) == 4
+
+
 def test_out_of_the_arms_reach_is_said(scanned: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["grasp", str(scanned), "--robot", GRIPPER, "--base=-6,0,-0.7,0"]) == 4
     printed = " ".join(capsys.readouterr().out.split())

@@ -96,6 +96,30 @@ def test_two_runs_give_the_bytes_of_one(tmp_path: Path, capsys: pytest.CaptureFi
     assert (tmp_path / "whole" / "occupancy.bt").read_bytes() == (tmp_path / "direct.bt").read_bytes()
 
 
+def test_slanted_surfaces_are_taken_where_asked(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    write_npz(tmp_path / "frames", shots(4, SCALE))
+    write_sensors(tmp_path / "frames")
+    slanted, used = [], []
+    for name, more in {"usual": (), "all": ("--max-incidence", "1.4")}.items():
+        assert run(tmp_path / "frames", tmp_path / name, *more) == 0
+        rows = json.loads((tmp_path / name / "progress.json").read_text())["frames"]
+        slanted.append(sum(row["too_slanted"] for row in rows))
+        used.append(sum(row["used"] for row in rows))
+    assert 0 < 5 * slanted[1] < slanted[0] and used[1] - used[0] > 0.9 * (slanted[0] - slanted[1])
+    sdf = mg.ProbabilisticSdf(voxel=0.004, truncation=0.02, max_incidence=1.4)
+    folder = open_frames(tmp_path / "frames")
+    for frame in folder.frames:
+        loaded = folder.read(frame)
+        sdf.integrate(loaded.image, loaded.camera)
+    sdf.save(tmp_path / "direct.sdf")
+    assert (tmp_path / "all" / "map.sdf").read_bytes() == (tmp_path / "direct.sdf").read_bytes()
+    assert run(tmp_path / "frames", tmp_path / "all", "--max-incidence", "1.3") == 2
+    assert "--max-incidence 1.3: the map in" in " ".join(capsys.readouterr().err.split())
+    with pytest.raises(SystemExit):
+        run(tmp_path / "frames", tmp_path / "other", "--max-incidence", "75")
+    assert "must be a number from 0.1 to 1.5 rad" in " ".join(capsys.readouterr().err.split())
+
+
 def test_a_sensor_without_a_pose_error_is_not_registered(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     write_npz(tmp_path / "frames", shots(3, SCALE))
     write_sensors(tmp_path / "frames")

@@ -231,6 +231,12 @@ def _add_scan(commands: Commands) -> None:
         help="leave out depths more than K standard deviations from their neighbours or from what three frames saw (default: none)",
     )
     parser.add_argument(
+        "--max-incidence",
+        type=kinds.incidence,
+        metavar="RAD",
+        help="leave out what is seen more slanted [rad] (default 1.05); 1.3 shows walls of low parts to cameras that look down",
+    )
+    parser.add_argument(
         "--register",
         action="store_true",
         default=None,
@@ -286,9 +292,8 @@ def _add_grasp(commands: Commands) -> None:
     parser.add_argument(
         "--sigmas",
         type=kinds.sigmas,
-        default=2.0,
         metavar="K",
-        help="standard deviations of the map's surface that hand and arm keep free (default 2)",
+        help="standard deviations of the map's surface that hand and arm keep free (default: 2; where that leaves no grasp, the hand 1, then 0)",
     )
     parser.add_argument(
         "--grasps",

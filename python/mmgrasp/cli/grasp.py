@@ -6,6 +6,7 @@ import argparse
 import json
 import os
 from collections import Counter
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -30,6 +31,8 @@ FORMAT, VERSION = "mmgrasp-grasps", 1
 _LEVEL = 0.17  # the table may be that far from level [rad]
 _ROOM = 0.01  # around an object's points, within which its surface is taken from the map [m]
 _TRIED = {"drawn": "surface points drawn", "evaluated": "grasps evaluated"}
+_DEFAULTS: dict[str, Any] = {name: value for name, (value, _) in _core._synthesis_option_table().items()}
+_LESS_CAUTIOUS = (1.0, 0.0)  # standard deviations kept free where the default leaves no grasp, in turn
 _SHARES = ("angle", "placement", "centring", "certainty")
 
 
@@ -45,15 +48,16 @@ def run_grasp(arguments: argparse.Namespace, console: Console) -> int:
     objects, plane = _read_objects(arguments.map)
     chosen = _chosen(objects, arguments.object, arguments.map)
     sdf = _core.ProbabilisticSdf.load(str(arguments.map / "map.sdf"))
-    around = Surroundings(sdf, arguments.sigmas) if types.arms else None
+    tried = (_DEFAULTS["sigmas"], *_LESS_CAUTIOUS) if arguments.sigmas is None else (arguments.sigmas,)
+    around = Surroundings(sdf, tried[0]) if types.arms else None
     rows = []
     with Reporter(console) as report:
         for k, thing in enumerate(chosen):
             report("grasps", k / len(chosen))
-            rows.append(_grasps_of(thing, plane, sdf, types, around, arguments))
+            rows.append(_grasps_of(thing, plane, sdf, types, around, arguments, tried))
         report("grasps", 1.0)
     content = {"format": FORMAT, "version": VERSION, "gripper": arguments.gripper or arguments.robot, "objects": rows}
-    content |= {"samples": arguments.samples, "sigmas": arguments.sigmas, "seed": arguments.seed}
+    content |= {"samples": arguments.samples, "seed": arguments.seed}
     if types.arms:
         content |= {"robot": arguments.robot, "base": arguments.base or [0.0] * 4}
     if arguments.out is not None:
@@ -150,8 +154,32 @@ def _grasps_of(
     types: HandTypes,
     around: Surroundings | None,
     arguments: argparse.Namespace,
+    tried: Sequence[float],
 ) -> dict[str, Any]:
-    """An object's row: the most probable grasps of all types of the hand, and what became of the others."""
+    """An object's row with the first of the `tried` standard deviations kept free that leaves a grasp; where none does, of the
+    first one."""
+    rows = []
+    for sigmas in tried:
+        rows.append(_row_of(thing, plane, sdf, types, around, arguments, sigmas))
+        if rows[-1]["grasps"] and len(rows) > 1:
+            rows[-1]["summary"] += (
+                f"; kept free: {sigmas:g} standard deviations of the map; with {tried[len(rows) - 2]:g} there is none"
+            )
+        if rows[-1]["grasps"]:
+            return rows[-1]
+    return rows[0]
+
+
+def _row_of(
+    thing: dict[str, Any],
+    plane: dict[str, Any],
+    sdf: _core.ProbabilisticSdf,
+    types: HandTypes,
+    around: Surroundings | None,
+    arguments: argparse.Namespace,
+    sigmas: float,
+) -> dict[str, Any]:
+    """The most probable grasps of all types of the hand, and what became of the others."""
     box = thing["bounds"].copy()
     middle, normal = box.mean(axis=0), np.array(plane["normal"])
     table = float((plane["offset"] - normal[:2] @ middle[:2]) / normal[2])
@@ -171,7 +199,7 @@ def _grasps_of(
             arm=arm,
             world=world,
             samples=arguments.samples,
-            sigmas=arguments.sigmas,
+            sigmas=sigmas,
             seed=arguments.seed,
             max_grasps=arguments.grasps,
         )
@@ -187,9 +215,11 @@ def _grasps_of(
     summary = "; ".join(f"{kind}: {text}" if kind else text for kind, text in said.items())
     if len(grasps) > len(kept):
         summary += f"; kept are the best {len(kept)}"
-    if not grasps and counts["collision"] and arguments.sigmas > 0:
-        summary += f"; {counts['collision']} touch the map, with {arguments.sigmas:g} standard deviations of it kept free (--sigmas)"
-    return {"name": thing["name"], "summary": summary, "counts": dict(counts), "grasps": kept}
+    if not grasps and counts["collision"] and sigmas > 0:
+        summary += (
+            f"; {counts['collision']} touch the map, with {sigmas:g} standard deviations of it kept free (--sigmas)"
+        )
+    return {"name": thing["name"], "sigmas": sigmas, "summary": summary, "counts": dict(counts), "grasps": kept}
 
 
 def _grasp(

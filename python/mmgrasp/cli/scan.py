@@ -45,7 +45,7 @@ SCAN_FILES = (
     *("surface.png", "objects.png", "sensors.png"),
 )
 CHECKPOINT_SECONDS = 5.0
-_OPTIONS = ("voxel", "truncation", "max_memory", "outlier_gate", "register")
+_OPTIONS = ("voxel", "truncation", "max_memory", "outlier_gate", "max_incidence", "register")
 _MOST_LINES = 10
 
 

@@ -45,6 +45,7 @@ class ScanOptions:
     truncation: float
     max_memory: float
     outlier_gate: float = 0.0
+    max_incidence: float = DEFAULTS["max_incidence"]
     register: bool = False
     """Each frame is moved onto the map before it is integrated, as far as its sensor's pose_error allows."""
 
@@ -55,6 +56,7 @@ class ScanOptions:
             truncation=self.truncation,
             max_memory=self.max_memory,
             outlier_gate=self.outlier_gate,
+            max_incidence=self.max_incidence,
         )
 
 
@@ -207,6 +209,7 @@ def choose_options(
     truncation: float | None,
     max_memory: float | None,
     outlier_gate: float | None = None,
+    max_incidence: float | None = None,
     register: bool = False,
 ) -> ScanOptions:
     """Options as given; the others from the first frame that can be read.
@@ -230,7 +233,8 @@ def choose_options(
     voxel = voxel or DEFAULTS["voxel"]
     truncation = truncation or voxel * DEFAULTS["truncation"] / DEFAULTS["voxel"]
     memory, gate = max_memory or DEFAULTS["max_memory"], outlier_gate or DEFAULTS["outlier_gate"]
-    return ScanOptions(voxel, round(truncation, 9), memory, gate, register)
+    slanted = max_incidence or DEFAULTS["max_incidence"]
+    return ScanOptions(voxel, round(truncation, 9), memory, gate, slanted, register)
 
 
 def _whole_mm(length: float) -> float:

@@ -50,13 +50,15 @@ def read_scan(path: Path) -> Scan:
         root["version"].fail(f"this version of mmgrasp reads version {VERSION}")
     root.mapping("format version mmgrasp map options sensors frames skipped")
     root["mmgrasp"].string()
-    options = root["options"].mapping("voxel truncation max_memory", "outlier_gate register")
+    options = root["options"].mapping("voxel truncation max_memory", "outlier_gate max_incidence register")
     values: dict[str, Any] = {key: options[key].number(above=0) for key in ("voxel", "truncation")}
     values["max_memory"] = options["max_memory"].number(above=0, most=LARGEST_MEMORY)
     if "outlier_gate" in options:
         values["outlier_gate"] = options["outlier_gate"].number(least=0)
         if 0 < values["outlier_gate"] < 3:
             options["outlier_gate"].fail("must be 0, or at least 3")
+    if "max_incidence" in options:
+        values["max_incidence"] = options["max_incidence"].number(above=0, most=1.549)
     if "register" in options:
         values["register"] = options["register"].boolean()
     name = root["map"].string()

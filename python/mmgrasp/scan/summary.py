@@ -21,6 +21,7 @@ def scan_summary(scan: Scan, folder: FrameFolder, sigmas: np.ndarray, objects: d
             "voxel": scan.options.voxel,
             "truncation": scan.options.truncation,
             "outlier_gate": scan.options.outlier_gate,
+            "max_incidence": scan.options.max_incidence,
             "registered": scan.options.register,
             "frames": len(scan.frames),
             "blocks": scan.sdf.blocks,

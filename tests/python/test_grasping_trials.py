@@ -10,10 +10,11 @@ import pytest
 
 import mmgrasp as mg
 from mmgrasp.reproduce import Context
-from mmgrasp.reproduce.grasping_trials import HAF, area_under_curve, run_baseline, wilson
+from mmgrasp.reproduce.grasping_trials import HAF, area_under_curve, run_baseline
 
 pytest.importorskip("mujoco")
 
+from mmgrasp._shares import share_interval
 from mmgrasp.reproduce import unknown_objects
 from mmgrasp.sim import Physics, pick_trial
 
@@ -91,12 +92,12 @@ def test_objects_stand_on_the_table() -> None:
 def test_interval_of_a_rate() -> None:
     """Wilson's interval holds the p from which the found rate is 1.96 standard deviations away."""
     for good, count in ((187, 200), (0, 10), (10, 10), (3, 7)):
-        low, high = wilson(good, count)
+        low, high = share_interval(good, count)
         for p in (low, high):
             if 1e-9 < p < 1 - 1e-9:
                 assert abs(good / count - p) == pytest.approx(1.959964 * np.sqrt(p * (1 - p) / count), rel=1e-6)
         assert -1e-12 <= low <= good / count + 1e-12 and good / count - 1e-12 <= high <= 1 + 1e-12
-    assert wilson(0, 0) == (0.0, 1.0)
+    assert share_interval(0, 0) == (0.0, 1.0)
 
 
 def test_area_under_the_curve_counts_pairs() -> None:

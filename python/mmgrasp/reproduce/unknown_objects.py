@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -21,9 +22,12 @@ POSE_ERROR = (0.001, 0.003)  # of each frame along and about each axis [m, rad]
 # The side walls of low parts are seen under a slant alone from cameras that look down on a table; this noise does not grow with it.
 MAX_INCIDENCE = 1.3
 VIEWS = 10
-WAYS = ("ours", "mean only", "one view", "from above", "height features")
+BASELINES = ("mean only", "one view", "from above", "height features")
+WAYS = ("ours", "at defaults", *BASELINES)
 DRAWS = 200
 SAMPLES = 600
+DEFAULT_INCIDENCE = _core._sdf_option_table()["max_incidence"][0]
+DEFAULT_SAMPLES = _core._synthesis_option_table()["samples"][0]
 CAUTIOUS = (2.0, 1.0, 0.0)  # standard deviations of the surface kept free around the hand, tried in turn
 _EXTRA = 2  # grasps of the list tried besides the best, for the calibration
 
@@ -72,7 +76,7 @@ def attempt(name: str, number: int, seed: int, rough: bool = False) -> dict[str,
     T = _core.pose(place, rpy=[0, 0, rng.uniform(-np.pi, np.pi)])
     scene = [LinkShape(_core.Plane([0, 0, 1], TABLE)), *(LinkShape(s.shape, T @ s.pose) for s in shapes)]
     frames = [_frame(scene, np.array(place), k, rng) for k in range(VIEWS)]
-    full, single = _map(frames), _map(frames[:1])
+    full, single, usual = _map(frames), _map(frames[:1]), _map(frames, max_incidence=DEFAULT_INCIDENCE)
     hand = _hand()
     search = functools.partial(
         _core.synthesize_grasps,
@@ -84,10 +88,7 @@ def attempt(name: str, number: int, seed: int, rough: bool = False) -> dict[str,
         seed=number + 1,
         threads=1,
     )
-    for sigmas in CAUTIOUS:  # the most cautious that leaves a grasp
-        rated = search(full, surface_draws=DRAWS, sigmas=sigmas)
-        if rated.grasps:
-            break
+    rated, sigmas = _most_cautious(functools.partial(search, full, surface_draws=DRAWS))
     mean_only = search(
         full,
         sigmas=0.0,
@@ -100,6 +101,7 @@ def attempt(name: str, number: int, seed: int, rough: bool = False) -> dict[str,
     above = _above(scene, np.array(place), rng)
     lists = {
         "ours": list(zip(rated.grasps, (r.pretouch_opening for r in rated.ratings), strict=True)),
+        "at defaults": _found(_most_cautious(functools.partial(search, usual, samples=DEFAULT_SAMPLES))[0]),
         "mean only": _found(mean_only),
         "one view": _found(search(single)),
         "from above": _from_above(*above, hand),
@@ -169,8 +171,17 @@ def _seen(scene: list[LinkShape], T: np.ndarray, camera: str, rng: np.random.Gen
     return {"image": image, "camera": _core.DepthCamera(intrinsics, noise, camera)}
 
 
-def _map(frames: list[dict[str, Any]]) -> _core.ProbabilisticSdf:
-    sdf = _core.ProbabilisticSdf(voxel=0.0025, truncation=0.0125, max_incidence=MAX_INCIDENCE, threads=1)
+def _most_cautious(search: Callable[..., _core.GraspSynthesis]) -> tuple[_core.GraspSynthesis, float]:
+    """The first search that leaves a grasp, or the last; as `mmgrasp grasp` does."""
+    for sigmas in CAUTIOUS:
+        found = search(sigmas=sigmas)
+        if found.grasps:
+            break
+    return found, sigmas
+
+
+def _map(frames: list[dict[str, Any]], max_incidence: float = MAX_INCIDENCE) -> _core.ProbabilisticSdf:
+    sdf = _core.ProbabilisticSdf(voxel=0.0025, truncation=0.0125, max_incidence=max_incidence, threads=1)
     covariance = np.diag([POSE_ERROR[0] ** 2] * 3 + [POSE_ERROR[1] ** 2] * 3)
     for frame in frames:
         sdf.integrate(frame["image"], frame["camera"], pose_covariance=covariance)

@@ -266,6 +266,51 @@ TEST(Eigengrasp, BallsTooRoundForFlatPadsAreSaidToBeUneven) {
   EXPECT_EQ(synthesize_grasps(map, *model, options).outcome, Outcome::solved);
 }
 
+/// A finger a group, of the three-finger gripper of the shared data.
+std::vector<EigengraspGroup> three_fingers() {
+  std::vector<EigengraspGroup> groups;
+  for (const char* finger : {"finger_1", "finger_2", "finger_middle"}) {
+    groups.push_back({finger, {}});
+    for (const char* joint : {"_joint_1", "_joint_2", "_joint_3"})
+      groups.back().joints.push_back(std::string(finger) + joint);
+  }
+  return groups;
+}
+
+TEST(Eigengrasp, ThreeFingerGripperOfDataHoldsABar) {
+  const std::string folder = std::string(MMGRASP_SHARED_DATA) + "/robots/robotiq/";
+  const std::string urdf = folder + "expanded/robotiq_3f_articulated.urdf";
+  if (!std::filesystem::exists(urdf)) GTEST_SKIP() << "no shared data";
+  RobotOptions read;
+  read.package_dirs["robotiq_3f_gripper_visualization"] = folder + "robotiq_3f_gripper_visualization";
+  const Robot robot = Robot::load(urdf, "", read);
+  // Its parallel motion: the last joint takes back what the first turns.
+  GraspType type{"parallel", VectorXd(9), VectorXd(9)};
+  for (int finger = 0; finger < 3; ++finger) {
+    type.open.segment(3 * finger, 3) = Vector3d(0.053, 0, -0.053);
+    type.closed.segment(3 * finger, 3) = Vector3d(0.9, 0, -0.9);
+  }
+  const auto model = make_hand_model(eigengrasp_hand(robot, "palm", three_fingers(), type, Vector3d::UnitY()), robot);
+  const Vector3d size(0.05, 0.16, 0.09);
+  const Pose T_bar = at(0, 0, 0.045, 0.4);
+  const ProbabilisticSdf map = scan({table_plane(), {Box{size}, T_bar}});
+  SynthesisOptions options;
+  options.table = 0.0;
+  options.threads = 1;
+  options.samples = 400;
+  const GraspSynthesis found = synthesize_grasps(map, *model, options);
+  ASSERT_EQ(found.outcome, Outcome::solved) << found.summary();
+  for (std::size_t i = 0; i < found.grasps.size(); ++i) {
+    EXPECT_NEAR(found.grasps[i].opening, size.x(), 0.01);
+    ASSERT_EQ(found.ratings[i].patches.size(), 3u);
+    for (const ContactPatch& patch : found.ratings[i].patches) {
+      const Vector3d p = T_bar.inverse() * patch.point;
+      EXPECT_NEAR(std::abs(p.x()), size.x() / 2, 0.0015);
+      EXPECT_LT(std::abs(p.y()), size.y() / 2);
+    }
+  }
+}
+
 TEST(Eigengrasp, ThreeFingerGripperOfData) {
   const std::string urdf = std::string(MMGRASP_SHARED_DATA) +
                            "/robots/robotiq/robotiq_3f_gripper_visualization/cfg/robotiq-3f-gripper_articulated.urdf";
@@ -274,12 +319,7 @@ TEST(Eigengrasp, ThreeFingerGripperOfData) {
   read.package_dirs["robotiq_3f_gripper_visualization"] =
       std::string(MMGRASP_SHARED_DATA) + "/robots/robotiq/robotiq_3f_gripper_visualization";
   const Robot robot = Robot::load(urdf, "", read);
-  std::vector<EigengraspGroup> groups;
-  for (const char* finger : {"finger_1", "finger_2", "finger_middle"}) {
-    groups.push_back({finger, {}});
-    for (const char* joint : {"_joint_1", "_joint_2", "_joint_3"})
-      groups.back().joints.push_back(std::string(finger) + joint);
-  }
+  const std::vector<EigengraspGroup> groups = three_fingers();
   GraspType type{"power", VectorXd::Zero(9), VectorXd::Zero(9)};
   for (int finger = 0; finger < 3; ++finger) type.closed.segment(3 * finger, 3) = Vector3d(0.9, 0.3, 0.1);
   // Its palm opens along y of "palm"; without a tool frame the palm's own is taken.

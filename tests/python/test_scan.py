@@ -272,6 +272,49 @@ def test_inverted_poses_are_said_and_can_be_told(tmp_path: Path, capfd: pytest.C
     np.testing.assert_allclose(again.mean(axis=0), direct.mean(axis=0), atol=1e-5)
 
 
+@pytest.mark.parametrize("wrong", [1, 2, 3, 4])
+def test_one_inverted_pose_is_named(wrong: int, tmp_path: Path) -> None:
+    """Left out where it contradicts what an earlier frame saw, else called doubtful; no other frame is."""
+    taken = write_frames(tmp_path / "frames", "seven_scenes", 5)
+    name = f"frame-{wrong:06d}"
+    T = np.linalg.inv(taken[wrong].T_world_camera)
+    np.savetxt(tmp_path / "frames" / f"{name}.pose.txt", T, fmt="%.17g")
+    assert run(tmp_path / "frames", tmp_path / "map") == 0
+    content = json.loads((tmp_path / "map" / "progress.json").read_text())
+    said = {row["name"]: row["reason"] for row in content["skipped"]}
+    said |= {row["name"]: row["warning"] for row in content["frames"] if row["warning"]}
+    ((named, reason),) = said.items()
+    assert name in named and "when its own pose is inverted" in reason
+
+
+def test_things_too_thin_for_the_voxels_are_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A standing plate of 5 mm, seen from both sides, comes out thicker than it is, and is told; one of 25 mm is not."""
+    pinhole = mg.mapping.PinholeCamera(160, 120, 150.0, 150.0, 79.5, 59.5)
+    for width, told in ((0.005, True), (0.025, False)):
+        folder = tmp_path / f"{width}"
+        folder.mkdir()
+        plate = mg.LinkShape(mg.Box([width, 0.2, 0.16]), mg.pose([0, 0, 0.08]))
+        scene = [mg.LinkShape(mg.collision.Plane([0, 0, 1], 0.0)), plate]
+        for k in range(12):
+            eye = np.array([0.45 * np.cos(0.53 * k), 0.45 * np.sin(0.53 * k), 0.3])
+            T = look_at(eye, np.array([0, 0, 0.06]))
+            image = mg.mapping.render_depth(scene, pinhole, T, noise=0.001, seed=k + 1)
+            write_npz_frame(folder / f"camera_{k:03d}.npz", image.depth, T)
+        intrinsics = "{width: 160, height: 120, fx: 150, fy: 150, cx: 79.5, cy: 59.5}"
+        noise = "{model: polynomial, constant: 0.001}"
+        (folder / "sensors.yaml").write_text(
+            f"version: 1\nsensors:\n  camera:\n    intrinsics: {intrinsics}\n    noise: {noise}\n"
+        )
+        assert run(folder, folder / "map", "--voxel", "0.004", "--truncation", "0.02") == 0
+        printed = " ".join(capsys.readouterr().out.split())
+        assert ("another one less than 16 mm behind it" in printed) == told, printed
+        sdf = mg.ProbabilisticSdf.load(folder / "map" / "map.sdf")
+        rays = np.array([[1.0, 0, 0.1], [-1.0, 0, 0.1]])
+        hits = sdf.cast_rays(rays, -rays * [1, 0, 0])
+        thick = hits.point[0, 0] - hits.point[1, 0]
+        assert (thick > width + 0.003) == told, thick
+
+
 @pytest.mark.slow
 def test_fifty_real_frames(data: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A kitchen, seen by a Kinect from about 1.8 m: options are chosen, all frames used, and the map is the library's."""

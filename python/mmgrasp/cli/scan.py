@@ -31,7 +31,7 @@ from ..scan import (
 )
 from ..scan.objects import GUESSED_UP, KNOWN_UP, Segmentation, objects_to_dict, vertex_normals
 from ..scan.progress_file import PROGRESS_FILE
-from ..scan.summary import scan_summary
+from ..scan.summary import scan_summary, thin_share
 from .console import Reporter
 from .exit_codes import DONE, NOTHING_USABLE
 from .output_folder import LIST, OutputFolder
@@ -166,8 +166,9 @@ def _write(
     mesh, sigmas = scan.sdf.mesh()
     points, triangles = mesh.vertices, mesh.triangles
     report("objects", 0.0)
-    found, objects = _objects(scan, frames, arguments.up, points, vertex_normals(points, triangles), sigmas)
-    summary = scan_summary(scan, frames, sigmas, objects)
+    normals = vertex_normals(points, triangles)
+    found, objects = _objects(scan, frames, arguments.up, points, normals, sigmas)
+    summary = scan_summary(scan, frames, sigmas, objects, thin_share(scan.sdf, points, normals))
     report("writing", 0.0)
     with folder.illustrated() as draft:
         write_ply(draft / "mesh.ply", points, triangles, sigmas)

@@ -7,14 +7,31 @@ from typing import Any
 
 import numpy as np
 
+from .._core import ProbabilisticSdf
 from ..frames import FrameFolder
 from .integration import FrameRecord, Scan
 
+_THIN = 4.0
+"""Surfaces nearer to one another, back to back, are pulled apart: a depth is told as far as 1.75 voxels behind it [voxels]."""
+_THIN_SAMPLES, _THIN_SHARE = 4000, 0.01
 PIXELS = ("measured", "used", "out_of_range", "too_noisy", "too_slanted", "without_normal", "outliers")
 
 
-def scan_summary(scan: Scan, folder: FrameFolder, sigmas: np.ndarray, objects: dict[str, Any]) -> dict[str, Any]:
-    """Plain values; nothing in it depends on when or how often the scan was interrupted."""
+def thin_share(sdf: ProbabilisticSdf, points: np.ndarray, normals: np.ndarray) -> float:
+    """Share of surface points that have another surface, seen from behind them, within a few voxels."""
+    chosen = np.arange(0, len(points), max(1, len(points) // _THIN_SAMPLES))
+    chosen = chosen[np.linalg.norm(normals[chosen], axis=1) > 0.5]
+    if not len(chosen):
+        return 0.0
+    depth = _THIN * sdf.voxel
+    hits = sdf.cast_rays(points[chosen] - depth * normals[chosen], normals[chosen])
+    return float((hits.hit & (hits.distance < depth)).mean())
+
+
+def scan_summary(
+    scan: Scan, folder: FrameFolder, sigmas: np.ndarray, objects: dict[str, Any], thin: float
+) -> dict[str, Any]:
+    """Plain values; nothing in it depends on when or how often the scan was interrupted. `thin`: see thin_share()."""
     quantiles = [float(x) for x in np.quantile(sigmas, [0.05, 0.5, 0.95])] if len(sigmas) else []
     return {
         "map": {
@@ -34,7 +51,7 @@ def scan_summary(scan: Scan, folder: FrameFolder, sigmas: np.ndarray, objects: d
         "doubtful": [{"frame": r.name, "warning": r.warning} for r in scan.frames if r.warning],
         "plane": objects["plane"] is not None,
         "objects": len(objects["objects"]),
-        "notes": notes(scan, folder, objects),
+        "notes": notes(scan, folder, objects, thin),
     }
 
 
@@ -47,7 +64,7 @@ def _sensor_row(scan: Scan, name: str) -> dict[str, Any]:
     return row | {"described_as": scan.sensors[name]}
 
 
-def notes(scan: Scan, folder: FrameFolder, objects: dict[str, Any]) -> list[str]:
+def notes(scan: Scan, folder: FrameFolder, objects: dict[str, Any], thin: float) -> list[str]:
     """What a reader of the map should know."""
     out = []
     if not folder.from_file:
@@ -62,6 +79,11 @@ def notes(scan: Scan, folder: FrameFolder, objects: dict[str, Any]) -> list[str]
         out.append("Frames were moved onto the map: what the first ones are wrong by is in all, and not in sigma.")
     if scan.options.outlier_gate:
         out.append(f"Depths more than {scan.options.outlier_gate:g} standard deviations off were left out.")
+    if thin > _THIN_SHARE:
+        out.append(
+            f"{thin:.0%} of the surface has another one less than {1e3 * _THIN * scan.options.voxel:g} mm behind it: things so thin come out too "
+            "thick, by millimetres, and sigma does not tell. A finer --voxel helps, where the noise allows it."
+        )
     if scan.absent:
         more = f" and {len(scan.absent) - 1} more" if len(scan.absent) > 1 else ""
         out.append(f"In the map, but no longer in the folder: {scan.absent[0]}{more}.")

@@ -123,6 +123,33 @@ TEST_F(BadFrame, Uncertainty) {
   refuses([](auto&, auto& camera, auto&) { camera.noise = constant_noise(0.02); }, "three standard deviations");
 }
 
+TEST_F(BadFrame, OnePoseTheWrongWayRound) {
+  std::vector<Pose> poses;
+  for (int k = 0; k < 6; ++k)
+    poses.push_back(look_at({0.3 * std::cos(0.5 * k), 0.3 * std::sin(0.5 * k), 0.25 + 0.03 * (k % 3)}, {0, 0, 0.02}));
+  for (std::size_t wrong = 0; wrong < poses.size(); ++wrong) {
+    ProbabilisticSdf sdf;
+    std::vector<std::string> said;
+    for (std::size_t k = 0; k < poses.size(); ++k) {
+      DepthImage image = frame_of(room(), camera_, poses[k]);
+      if (k == wrong) image.T_world_camera = poses[k].inverse();
+      std::string warning;
+      const std::string refused = message([&] { warning = sdf.integrate(image, camera_).warning; });
+      said.push_back(refused == "accepted" ? warning : refused);
+    }
+    if (wrong == 0) {  // Nothing can be said of it until another frame is there.
+      EXPECT_NE(said[1].find("when the earlier one's pose is inverted"), std::string::npos) << said[1];
+      continue;
+    }
+    for (std::size_t k = 0; k < poses.size(); ++k) {
+      if (k == wrong)
+        EXPECT_NE(said[k].find("when its own pose is inverted"), std::string::npos) << k << ": " << said[k];
+      else
+        EXPECT_EQ(said[k], "") << wrong << " is inverted, " << k << " is not";
+    }
+  }
+}
+
 TEST_F(BadFrame, PosesTheWrongWayRound) {
   ProbabilisticSdf sdf;
   std::vector<Pose> poses;

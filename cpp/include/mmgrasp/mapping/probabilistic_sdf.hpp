@@ -114,11 +114,11 @@ struct MMGRASP_EXPORT SdfObstacleOptions {
 /// (P3 4.5.2, 4.5.3). Blocks of 8 x 8 x 8 voxels exist where a surface was seen.
 ///
 /// Every frame updates mean and variance of the voxels near its surface by (4.16) and (4.17), which is weighted least
-/// squares with weights 1 / sigma^2: the order of frames does not matter beyond the rounding of floats. Signs are
-/// opposite to (4.12): positive in front. What lies deeper than the truncation behind a surface stays unknown; a voxel
-/// behind a surface that later more frames looked through than saw is free: what moved away goes. Of each camera with a
-/// systematic error the map keeps a mean of its own; they are combined when asked, so that the systematic error does
-/// not average away.
+/// squares with weights 1 / sigma^2: the order of frames does not matter to them beyond the rounding of floats. Signs
+/// are opposite to (4.12): positive in front. What lies deeper than the truncation behind a surface stays unknown; a
+/// voxel behind a surface that later more frames looked through than saw is free: what moved away goes. Of each camera
+/// with a systematic error the map keeps a mean of its own; they are combined when asked, so that the systematic error
+/// does not average away.
 ///
 ///     ProbabilisticSdf sdf(options);
 ///     sdf.integrate(image, camera);

@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "mmgrasp/core/error.hpp"
 
@@ -79,17 +80,28 @@ void check_pose(const KeyFrame& key_frame, const DepthImage& image, const SdfOpt
   constexpr int kEnough = 100;
   const Pose &T_first = key_frame.T_world_camera, &T_second = image.T_world_camera;
   const double tolerance = 2 * options.truncation;
-  const Agreement given = key_frame.compare(image, T_second.inverse(Eigen::Isometry) * T_first, tolerance);
-  const Agreement inverted = key_frame.compare(image, T_second * T_first.inverse(Eigen::Isometry), tolerance);
+  const Pose T_inverse = T_second.inverse(Eigen::Isometry);
+  const Agreement given = key_frame.compare(image, T_inverse * T_first, tolerance);
+  Agreement inverted;
+  std::string how;
+  for (const auto& [T_camera_key, said] :
+       {std::pair{Pose(T_second * T_first.inverse(Eigen::Isometry)), "when the poses are inverted"},
+        {Pose(T_second * T_first), "when its own pose is inverted"},
+        {Pose(T_inverse * T_first.inverse(Eigen::Isometry)), "when the earlier one's pose is inverted"}}) {
+    const Agreement found = key_frame.compare(image, T_camera_key, tolerance);
+    if (found.confirmed <= inverted.confirmed) continue;
+    inverted = found;
+    how = said;
+  }
   // Both ways nearly the same view say nothing.
   const bool fits_inverted = inverted.confirmed >= kEnough && inverted.share() > 0.8 &&
                              inverted.confirmed > 2 * given.confirmed && given.share() < 0.5;
-  const std::string inverted_says = percent(inverted.share()) + " when the poses are inverted";
+  const std::string inverted_says = percent(inverted.share()) + " " + how;
   if (given.seen < kEnough) {
     // Views that hardly overlap, as of a camera that turns on the spot, are not contradicted by what they show.
     if (fits_inverted)
       report.warning = "this frame and an earlier one hardly see the same place, but agree on " + inverted_says +
-                       ": do the poses lead from the camera to the world?";
+                       ": do poses lead from the camera to the world?";
     return;
   }
   if (fits_inverted) {

@@ -397,8 +397,9 @@ IntegrationReport integrate_frame(SdfGrid& grid, DepthImage image, const DepthCa
   integration.collect_free();
   integration.run();
   integration.commit(report);
-  // A key frame serves until the camera sees something else.
-  if (grid.frames == 0 || std::isnan(report.agreement)) grid.key_frame = std::move(key_frame);
+  // A key frame serves until the camera sees something else. A doubtful one does not take its place.
+  if (grid.frames == 0 || (std::isnan(report.agreement) && report.warning.empty()))
+    grid.key_frame = std::move(key_frame);
   ++grid.frames;
   return report;
 }

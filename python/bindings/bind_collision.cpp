@@ -3,7 +3,9 @@
 #include "given.hpp"
 #include "mmgrasp/collision/checker.hpp"
 #include "mmgrasp/collision/detail/edge_steps.hpp"
+#include "mmgrasp/collision/detail/placed_bodies.hpp"
 #include "mmgrasp/collision/edge.hpp"
+#include "plan_arguments.hpp"
 #include "same_robot.hpp"
 
 namespace mmgrasp::python {
@@ -216,12 +218,25 @@ void bind_checker(py::module_& m) {
       });
 }
 
+using PlacedBodies = mmgrasp::detail::PlacedBodies;
+
+PlacedBodies placed_bodies(const std::vector<LinkShape>& shapes, const ArrayLike& T_world_body) {
+  return {shapes, shapes.empty() ? Poses{} : poses_argument(T_world_body, "T_world_body")};
+}
+
+void bind_placed_bodies(py::module_& m) {
+  py::class_<PlacedBodies>(m, "_PlacedBodies", "Shapes where they are at one time, one T_world_body (4, 4) a shape.")
+      .def(py::init(&placed_bodies), "shapes"_a, "T_world_body"_a)
+      .def("distance", &PlacedBodies::distance, "other"_a, "within"_a);
+}
+
 }  // namespace
 
 void bind_collision(py::module_& m) {
   bind_world(m);
   bind_answers(m);
   bind_checker(m);
+  bind_placed_bodies(m);
   bind_disabled_pairs(m);
 }
 

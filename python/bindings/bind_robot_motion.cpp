@@ -57,6 +57,16 @@ RobotMotion drive(const BasePath& path, const Robot& robot, const JointGroup& ar
       [&] { return base_path_motion(path, robot.base(), robot.base_limits(), arm.names(), q, period); });
 }
 
+/// The same along poses as plan.json has them, for a robot of which only the names of the arm's joints are needed.
+RobotMotion drive_along(const ArrayLike& poses, const Robot& robot, const std::vector<std::string>& joints,
+                        const ArrayLike& configuration, double period) {
+  BasePath path;
+  path.outcome = Outcome::solved;
+  for (const Eigen::VectorXd& row : rows_argument(poses, "poses", 3)) path.poses.emplace_back(row);
+  const Eigen::VectorXd q = vector_argument(configuration, "configuration", static_cast<Eigen::Index>(joints.size()));
+  return interruptible([&] { return base_path_motion(path, robot.base(), robot.base_limits(), joints, q, period); });
+}
+
 RobotMotion drive_by(const DriveByResult& result, const std::vector<double>& openings, double period) {
   return interruptible([&] { return drive_by_motion(result, openings, period); });
 }
@@ -153,6 +163,7 @@ void bind_robot_motion(py::module_& m) {
                std::string(py::repr(py::float_(t.duration()))) + " s, " + std::to_string(t.gripper.size()) +
                " gripper events)";
       });
+  m.def("_drive_along", &drive_along, "poses"_a, "robot"_a, "joints"_a, "configuration"_a, "period"_a);
 }
 
 }  // namespace mmgrasp::python

@@ -4,6 +4,7 @@
 #include "mmgrasp/grasp/hand.hpp"
 #include "mmgrasp/verify/path_check.hpp"
 #include "mmgrasp/verify/plan_check.hpp"
+#include "mmgrasp/verify/schedule_check.hpp"
 
 namespace mmgrasp::python {
 namespace {
@@ -392,6 +393,23 @@ void bind_verify(py::module_& top) {
       },
       py::arg("plan"), py::kw_only(), py::arg("progress") = py::none(),
       ("Checks a finished plan against its scenario." + option_help(check_fields())).c_str());
+  m.def(
+      "check_schedule",
+      [](const std::vector<PlanToCheck>& plans, const std::vector<std::vector<double>>& starts,
+         const std::vector<std::vector<double>>& durations, double clearance, const Progress& progress) {
+        if (plans.size() != starts.size()) throw InvalidInput("starts: must be one list a plan");
+        if (plans.size() != durations.size()) throw InvalidInput("durations: must be one list a plan");
+        std::vector<ScheduledPlan> robots;
+        for (std::size_t i = 0; i < plans.size(); ++i) robots.push_back({plans[i], starts[i], durations[i]});
+        return LongCall(progress).run(
+            [&](const Monitor& monitor) { return check_schedule(robots, clearance, monitor); });
+      },
+      py::arg("plans"), py::arg("starts"), py::arg("durations"), py::arg("clearance"), py::kw_only(),
+      py::arg("progress") = py::none(),
+      "Faults of robots that carry out their plans on one clock and come closer to each other than `clearance` [m], "
+      "less 1 mm, at any\nmoment. `starts`: when each piece of each plan begins [s]: straight sections of drives, "
+      "motions "
+      "of picks,\nclosings and openings of the hand; `durations`: how long they are said to take.");
 }
 
 }  // namespace mmgrasp::python

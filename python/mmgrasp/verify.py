@@ -28,6 +28,7 @@ from ._core.verify import (
     broken_seal as broken_seal,
     check_path as check_path,
     check_plan as check_plan,
+    check_schedule as check_schedule,
     overlapping_bodies as overlapping_bodies,
     pads_unlike_grasp as pads_unlike_grasp,
 )

@@ -24,7 +24,7 @@ CHEAP = {
         RobotSource RobotSource.add_link RobotSource.add_urdf SegmentRequirement Sphere SupportingPlane ToolRegion Tray World
         NonlinearProblem copper beam_frame round_section rectangular_section default_grasp_search eigengrasp_hand tray_shapes
         joint_limit_objective singularity_objective camera_view_objective self_distance_objective pose look_down
-        verify.PlanToCheck verify.Fault _from_pickle
+        verify.PlanToCheck verify.Fault _from_pickle _PlacedBodies
         """,
     "a text or arrays are made of a result": """
         write_plan segment_names
@@ -42,7 +42,7 @@ CHEAP = {
         soft_finger_torque wheel_speeds make_base_grid pairwise_weights
         """,
     "one configuration, one pose, one time, one place or one body": """
-        verify.pads_unlike_grasp verify.broken_seal seal_gap _centre_of_mass _closing_line
+        verify.pads_unlike_grasp verify.broken_seal seal_gap _centre_of_mass _closing_line _PlacedBodies.distance
         CapabilityMap.configuration CapabilityMap.index_at CollisionChecker.contacts CollisionChecker.distance
         CollisionChecker.distances CollisionChecker.first_contact CollisionChecker.is_free CollisionChecker.rejection
         IkObjective.evaluate IkSeedDatabase.add IkSeedDatabase.seeds JointGroup.at JointGroup.fk JointGroup.force_manipulability
@@ -82,7 +82,7 @@ CHEAP = {
         CapabilityMap.restricted JointGroup.ik_branches ObjectRegions.remove RobotMotion.of_drive finger_length_range
         minimal_grippers plan_grippers preferred_grippers next_view optimize_grasp plan_drive_by plan_manipulation plan_object_pick
         plan_part_supply plan_pick plan_platform_locations plan_stop_picks share_headings shorten_drive_by solve_nonlinear
-        verify.check_plan
+        verify.check_plan verify.check_schedule _drive_along
         """,
 }
 

@@ -25,7 +25,7 @@ NOT_DATA = {
     *("ReachDatabase", "CapabilityMap", "Roadmap", "ProbabilisticSdf", "OccupancyMap", "IkSeedDatabase"),
     *("DistanceField", "MeshDistanceField", "GridDistanceField", "SupportedFrame", "ObjectRegions"),
     *("ManipulationProblem", "ObjectPathProblem", "ObjectPathEvaluator", "PartSupplyProblem", "DriveByTask"),
-    *("ToolRegion", "OrientationConstraint"),
+    *("ToolRegion", "OrientationConstraint", "_PlacedBodies"),
 }
 OWN_COPIES = {"Robot", "JointGroup", "Mesh", "ReachDatabase", "CapabilityMap", "Roadmap", "ObjectRegions"}
 

@@ -1390,6 +1390,14 @@ class CollisionChecker:
         """
         (n,) bounds on how far any point moves when a joint moves by one unit [m/rad or m/m].
         """
+class _PlacedBodies:
+    """
+    Shapes where they are at one time, one T_world_body (4, 4) a shape.
+    """
+    def __init__(self, shapes: collections.abc.Sequence[LinkShape], T_world_body: numpy.typing.ArrayLike) -> None:
+        ...
+    def distance(self, other: _PlacedBodies, within: float) -> float:
+        ...
 class IkObjective:
     """
     A cost of configurations that inverse kinematics lowers with the freedom that the pose leaves: pass a list as ik(..., objectives=[...]).
@@ -7064,6 +7072,8 @@ def _closing_line(hand: Hand, robot: Robot, share: float) -> tuple[numpy.typing.
     they are (negative: they have passed each other) [m], and the steepest angle of a pad's push to the line on which they close [rad].
     """
 def _cuboid_option_table() -> dict[str, typing.Any]:
+    ...
+def _drive_along(poses: numpy.typing.ArrayLike, robot: Robot, joints: collections.abc.Sequence[str], configuration: numpy.typing.ArrayLike, period: float) -> RobotMotion:
     ...
 def _drive_by_option_table() -> dict[str, typing.Any]:
     ...

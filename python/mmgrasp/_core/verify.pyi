@@ -7,7 +7,7 @@ import mmgrasp._core
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['CheckedBody', 'CheckedCup', 'CheckedDriveBy', 'CheckedFinger', 'CheckedGrasp', 'CheckedGrid', 'CheckedIntersection', 'CheckedLegValues', 'CheckedMotion', 'CheckedPart', 'CheckedPick', 'CheckedRegion', 'CheckedStop', 'CheckedSuction', 'CheckedTray', 'CheckedUnloading', 'Fault', 'PathCheckResult', 'PlanCheckResult', 'PlanToCheck', 'StopRate', 'broken_seal', 'check_path', 'check_plan', 'overlapping_bodies', 'pads_unlike_grasp']
+__all__: list[str] = ['CheckedBody', 'CheckedCup', 'CheckedDriveBy', 'CheckedFinger', 'CheckedGrasp', 'CheckedGrid', 'CheckedIntersection', 'CheckedLegValues', 'CheckedMotion', 'CheckedPart', 'CheckedPick', 'CheckedRegion', 'CheckedStop', 'CheckedSuction', 'CheckedTray', 'CheckedUnloading', 'Fault', 'PathCheckResult', 'PlanCheckResult', 'PlanToCheck', 'StopRate', 'broken_seal', 'check_path', 'check_plan', 'check_schedule', 'overlapping_bodies', 'pads_unlike_grasp']
 class CheckedBody:
     """
     A body of the scene as the plan file describes it.
@@ -705,6 +705,12 @@ def check_plan(plan: PlanToCheck, *, progress: collections.abc.Callable[[str, fl
         region_samples: int = 20  # base poses drawn in each region, cells drawn beside it, and poses in the radius a stop claims
         seed: int = 20240607  # of the base poses drawn
         threads: int = 0  # 0: all
+    """
+def check_schedule(plans: collections.abc.Sequence[PlanToCheck], starts: collections.abc.Sequence[collections.abc.Sequence[float]], durations: collections.abc.Sequence[collections.abc.Sequence[float]], clearance: float, *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None) -> list[Fault]:
+    """
+    Faults of robots that carry out their plans on one clock and come closer to each other than `clearance` [m], less 1 mm, at any
+    moment. `starts`: when each piece of each plan begins [s]: straight sections of drives, motions of picks,
+    closings and openings of the hand; `durations`: how long they are said to take.
     """
 def overlapping_bodies(bodies: collections.abc.Sequence[CheckedBody], *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None) -> list[tuple[int, int]]:
     """

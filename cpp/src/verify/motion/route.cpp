@@ -4,6 +4,7 @@
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "verify/context.hpp"
+#include "verify/motion/drive_profile.hpp"
 
 namespace mmgrasp::verify::detail {
 namespace {
@@ -30,55 +31,14 @@ bool driveable(BaseKind base, const Eigen::Vector3d& from, const Eigen::Vector3d
   return turned <= kSamePose && aside <= kSamePose;
 }
 
-/// Least time from rest to rest over a distance.
-double least_time(double distance, double velocity, double acceleration) {
-  const double ramps = velocity * velocity / acceleration;  // [m] or [rad] to full speed and back
-  if (distance < ramps) return 2 * std::sqrt(distance / acceleration);
-  return distance / velocity + velocity / acceleration;
-}
-
-/// How far the fastest of four Mecanum wheels runs per share of a straight piece [m], at the heading on it that asks
-/// the most of it: |v_x| + |v_y| + |omega| (track + wheelbase) / 2, of which |cos| + |sin| of the direction seen from
-/// the base is largest halfway between two axes.
-double mecanum_travel(const Eigen::Vector3d& from, const Eigen::Vector3d& to, const BaseLimits& limits) {
-  const Eigen::Vector3d way = to - from;
-  const double course = std::atan2(way.y(), way.x());
-  const double least = course - std::max(from.z(), to.z()), most = course - std::min(from.z(), to.z());
-  const auto share = [](double angle) { return std::abs(std::cos(angle)) + std::abs(std::sin(angle)); };
-  // The first middle between two axes from `least` on.
-  constexpr double kHalfRight = mmgrasp::detail::kPi / 4;
-  const double middle = kHalfRight + 2 * kHalfRight * std::ceil((least - kHalfRight) / (2 * kHalfRight));
-  const double worst = middle <= most ? std::sqrt(2.0) : std::max(share(least), share(most));
-  return way.head<2>().norm() * worst + 0.5 * (limits.wheel_separation + limits.wheelbase) * std::abs(way.z());
-}
-
-/// Time from rest to rest over a straight piece, driven and turned at once at the limits; `travel`: of the fastest
-/// wheel, 0 where wheels set no limit of their own.
-double piece_time(double driven, double turned, double travel, const BaseLimits& limits, double speed,
-                  double turning_rate) {
-  double top = std::min(speed / driven, turning_rate / turned);  // [1/s] Infinite where there is no way.
-  if (travel > 0) top = std::min(top, limits.wheel_velocity / travel);
-  const double acceleration = std::min(limits.linear_acceleration / driven, limits.angular_acceleration / turned);
-  return driven > 0 || turned > 0 ? least_time(1, top, acceleration) : 0;
-}
-
 /// Length and turning must be the poses', the duration that of a base which rests at each of them.
 bool values_hold(const CheckedLegValues& said, const std::vector<Eigen::Vector3d>& poses, BaseKind base,
                  const BaseLimits& limits) {
-  double speed = limits.linear_velocity, turning_rate = limits.angular_velocity;
-  if (base == BaseKind::diff_drive) {  // a turn on the spot drives the wheels at half their separation
-    speed = std::min(speed, limits.wheel_velocity);
-    turning_rate = std::min(turning_rate, limits.wheel_velocity / (0.5 * limits.wheel_separation));
-  }
   double length = 0, turning = 0, duration = 0;
   for (std::size_t i = 1; i < poses.size(); ++i) {
-    const double driven = (poses[i] - poses[i - 1]).head<2>().norm();
-    const double turned = std::abs(poses[i].z() - poses[i - 1].z());
-    length += driven;
-    turning += turned;
-    const bool mecanum = base == BaseKind::omni && limits.wheelbase > 0;
-    const double travel = mecanum ? mecanum_travel(poses[i - 1], poses[i], limits) : 0;
-    duration += piece_time(driven, turned, travel, limits, speed, turning_rate);
+    length += (poses[i] - poses[i - 1]).head<2>().norm();
+    turning += std::abs(poses[i].z() - poses[i - 1].z());
+    duration += DriveProfile(poses[i - 1], poses[i], base, limits).duration();
   }
   const auto same = [](double a, double b) { return std::abs(a - b) <= 1e-6 * (1 + b); };  // false for NaN
   return same(said.length, length) && same(said.turning, turning) && same(said.duration, duration);

@@ -49,6 +49,7 @@ WRONG: dict[str, tuple[list[Any], Any]] = {
     "Callable[..., Any]": ([3, "x", None], print),
     "Callable[[Scan], object] | None": ([3, "x"], None),
     "Callable[[], contextlib.AbstractContextManager[object]]": ([3, "x", None], contextlib.nullcontext),
+    "Sequence[str | os.PathLike[str]]": (["a", b"a", 3, None, [3], [b"a"]], ["nowhere.json", "elsewhere.json"]),
     "Iterable[str]": (["a", b"a", 3, None, [3], [b"a"]], ["a"]),
     "Sequence[dict[str, Any]]": (["a", 3, None, [3]], [{}]),
     "Sequence[np.ndarray]": (["a", 3, None], [np.eye(4)]),

@@ -36,6 +36,7 @@ def build_parser() -> argparse.ArgumentParser:
         _add_plan,
         _add_verify,
         _add_arrive,
+        _add_schedule,
         _add_check,
         _add_init,
         _add_scan,
@@ -74,8 +75,10 @@ def _add_plan(commands: Commands) -> None:
 
 
 def _add_verify(commands: Commands) -> None:
-    parser = commands.add_parser("verify", help="check a finished plan without the planner")
-    parser.add_argument("plan", type=kinds.plan, help="plan.json, or the folder it lies in")
+    parser = commands.add_parser("verify", help="check a finished plan or schedule without the planner")
+    parser.add_argument(
+        "plan", type=kinds.plan, help="plan.json, or the folder it lies in; or what `mmgrasp schedule` wrote"
+    )
     parser.add_argument("--scenario", type=kinds.path, metavar="FILE", help="compare with this scenario, read anew")
     parser.add_argument("--robot", type=kinds.source, metavar="NAME", help="the robot profile the plan was made with")
     parser.add_argument(
@@ -115,6 +118,38 @@ def _add_arrive(commands: Commands) -> None:
         "-o", "--out", type=kinds.path, metavar="DIR", help="write arrival.json and the trajectories there"
     )
     parser.add_argument("--json", action="store_true", help="print arrival.json")
+
+
+def _add_schedule(commands: Commands) -> None:
+    parser = commands.add_parser(
+        "schedule", help="find when each of several robots may go in one room so that they never meet"
+    )
+    parser.add_argument(
+        "plans",
+        type=kinds.plan,
+        nargs="+",
+        help="plan.json of each robot, or the folder it lies in: the first goes as planned, each other one waits for those before it",
+    )
+    parser.add_argument(
+        "-o", "--out", type=kinds.path, required=True, metavar="FILE", help="where the schedule is written (JSON)"
+    )
+    parser.add_argument(
+        "--clearance",
+        type=kinds.Number(0.01, 10, "m"),
+        default=0.1,
+        metavar="M",
+        help="how far the robots stay apart at every moment, arms and parts in the hand included [m] (default 0.1)",
+    )
+    parser.add_argument(
+        "--trajectories",
+        type=kinds.path,
+        metavar="DIR",
+        help="also write each robot's round with its waits there, as CSV and as a ROS message (JSON)",
+    )
+    parser.add_argument(
+        "--png", type=kinds.path, metavar="FILE", help="also draw what each robot does when, and the areas they share"
+    )
+    parser.add_argument("--json", action="store_true", help="print the schedule as JSON")
 
 
 def _add_init(commands: Commands) -> None:

@@ -30,9 +30,11 @@ from ..part_supply import (
     plan_to_check,
     read_plan,
     verify_plan,
+    verify_schedule,
 )
 from ..part_supply.drive_by import check_in_passing
 from ..part_supply.plan_file import check_names
+from ..part_supply.schedule_check import is_schedule
 from ..scenario import load_scenario
 from .arguments import build_parser
 from .arrive import run_arrive
@@ -45,6 +47,7 @@ from .init import run_init
 from .output_folder import OutputFolder
 from .pipe import run_pipe
 from .scan import run_scan
+from .schedule import print_schedule_verdict, run_schedule
 from .segment import run_segment
 from .signals import Ended, code_of, ended_by_signals
 from .tables import bench_table, drive_by_summary, print_verdict, summary
@@ -117,7 +120,9 @@ def report_page(content: dict[str, Any], pictures: Path, timings: Sequence[tuple
 
 
 def run_verify(arguments: argparse.Namespace, console: Console) -> int:
-    """`mmgrasp verify`: checks a plan; the exit code."""
+    """`mmgrasp verify`: checks a plan or a schedule; the exit code."""
+    if is_schedule(arguments.plan):
+        return verify_schedule_file(arguments, console)
     options = {key: value for key in ("samples", "threads") if (value := getattr(arguments, key)) is not None}
     with Reporter(console) as report:
         verdict = verify_plan(
@@ -127,6 +132,20 @@ def run_verify(arguments: argparse.Namespace, console: Console) -> int:
         print(json.dumps(verdict.to_dict(), indent=1))
     else:
         print_verdict(verdict, console)
+    return DONE if verdict.ok else FAULTY
+
+
+def verify_schedule_file(arguments: argparse.Namespace, console: Console) -> int:
+    """`mmgrasp verify` of a schedule; the exit code."""
+    for key in ("scenario", "robot", "samples", "threads"):
+        if getattr(arguments, key) is not None:
+            raise InvalidInput(f"--{key}: is for plans; {printable(str(arguments.plan))} is a schedule")
+    with Reporter(console) as report:
+        verdict = verify_schedule(arguments.plan, progress=report)
+    if arguments.json:
+        print(json.dumps(verdict.to_dict(), indent=1))
+    else:
+        print_schedule_verdict(verdict, console)
     return DONE if verdict.ok else FAULTY
 
 
@@ -267,6 +286,7 @@ COMMANDS = {
     "bench": run_bench,
     "view": run_view,
     "arrive": run_arrive,
+    "schedule": run_schedule,
 }
 
 

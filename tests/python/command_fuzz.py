@@ -26,7 +26,7 @@ from plan_by_hand import plan_by_hand
 
 TOO_LONG = 90  # [s]
 LEFT_OUT = ("reproduce", "bench")  # they take hours, or data that is not there
-OUTPUTS = ("out", "png", "film", "write_srdf")
+OUTPUTS = ("out", "png", "film", "write_srdf", "trajectories")
 """What a command writes to."""
 WORDS = [
     *("", "x", "-1", "0", "1", "1e3", "nan", "inf", "-inf", "1e999", "0x10", "1_0", "\u0663", "'; rm", "a" * 5000),

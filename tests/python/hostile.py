@@ -51,7 +51,7 @@ PARTS = {
     "command": Part("options and streams of the command", "cli_doors cli_options command_fuzz", ("command_fuzz.py 400",)),
     "places": Part("places that are written", "output_places output_folder output_commands killed_runs saved_again", ("killed_runs.py 60",)),
     "stops": Part("Ctrl-C, signals, costly calls", "interrupt signals long_work costly_calls"),
-    "verify": Part("changed plans and scenarios", "verify_files plan_mutations mutation_shares",
+    "verify": Part("changed plans and scenarios", "verify_files plan_mutations mutation_shares schedule schedule_search",
                    ("mutation_shares.py 4",)),
     "plans": Part("odd scenarios: solved plans hold", "odd_scenarios",
                   ("odd_scenarios.py 500", "odd_scenarios.py 120 1 {kept} all", "odd_scenarios.py 100 1 {kept} advice")),

@@ -5,13 +5,14 @@ from __future__ import annotations
 import copy
 import json
 import math
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from mmgrasp import InvalidInput, Outcome
+from mmgrasp import Error, InvalidInput, Outcome
 from mmgrasp.part_supply import Schedule, schedule_plans, verify_schedule
 from plan_by_hand import URDF
 from schedule_plans import (
@@ -269,6 +270,38 @@ def test_files_that_are_no_schedule(crossing: Schedule, key: str, value: Any, me
         verify_schedule(crossing.to_dict() | {key: value})
 
 
+DESCRIBES = ("mmgrasp", "areas", "obstruction", "earliest_end", "name")
+"""What a schedule says beside what is checked."""
+
+
+def places(value: Any, path: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
+    """Where all values of a file are."""
+    if path:
+        yield path
+    if isinstance(value, dict | list):
+        for key in value if isinstance(value, dict) else range(len(value)):
+            yield from places(value[key], (*path, key))
+
+
+@pytest.mark.parametrize("odd", [None, "x", -1, 1e300, [], {}, True, [1], "plan.json"])
+def test_no_odd_value_passes_or_breaks_the_check(crossing: Schedule, odd: Any) -> None:
+    good = crossing.to_dict()
+    for path in places(good):
+        if set(path) & set(DESCRIBES):
+            continue
+        content = copy.deepcopy(good)
+        target: Any = content
+        for key in path[:-1]:
+            target = target[key]
+        if target[path[-1]] == odd:
+            continue
+        target[path[-1]] = odd
+        try:
+            assert not verify_schedule(content).ok, path
+        except Error as error:
+            assert str(error)
+
+
 def test_plans_that_cannot_be_scheduled(tmp_path: Path) -> None:
     first, second = plan_along(east()), plan_along(north())
     second["scenario"]["obstacles"][0]["pose"]["xyz"][0] += 0.1
@@ -277,6 +310,17 @@ def test_plans_that_cannot_be_scheduled(tmp_path: Path) -> None:
     second = plan_along(north()) | {"outcome": "timeout"}
     with pytest.raises(InvalidInput, match="must be solved"):
         schedule_plans(write_plans(tmp_path, first, second))
+    still = plan_along([[0.0, -2.0, 0.0], [0.0, -2.0, 0.0]])
+    with pytest.raises(InvalidInput, match=r"robot 2 \(.*\): does not move in its plan"):
+        schedule_plans(write_plans(tmp_path, first, still))
+    picks = plan_with_pick(0.04)
+    picks["picks"][0]["part"] = "nobody"
+    with pytest.raises(InvalidInput, match="no such part"):
+        schedule_plans(write_plans(tmp_path, first, picks))
+    picks = plan_with_pick(0.04)
+    picks["picks"][0]["motions"][2]["times"] = [0.0, 0.0]
+    with pytest.raises(InvalidInput, match=r"robot 2 \(.*\): .*times"):
+        schedule_plans(write_plans(tmp_path, first, picks))
     paths = write_plans(tmp_path, first, plan_along(north()))
     for clearance in (0.0, 11.0, math.nan):
         with pytest.raises(InvalidInput, match="clearance"):

@@ -108,6 +108,7 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     assert png.read_bytes().startswith(b"\x89PNG") and (folder / "robot_2.csv").stat().st_size > 1000
     assert main(["verify", str(out)]) == 0
     assert "2 robots never come closer than 0.1 m" in capsys.readouterr().out
+    out = tmp_path / "wider.json"
     assert main(["schedule", *paths, "-o", str(out), "--json", "--clearance", "0.2"]) == 0
     content = json.loads(capsys.readouterr().out)
     assert content == json.loads(out.read_text()) and content["clearance"] == 0.2
@@ -126,11 +127,12 @@ def test_what_the_command_refuses(tmp_path: Path, capsys: pytest.CaptureFixture[
     assert "no-schedule" in capsys.readouterr().out
     assert main(["verify", str(out), "--samples", "5"]) == 2
     assert "--samples: is for plans" in capsys.readouterr().err
-    assert main(["schedule", first, "-o", str(out)]) == 2
+    new = str(tmp_path / "new.json")
+    assert main(["schedule", first, "-o", new]) == 2
     assert "must be 2 to 16" in capsys.readouterr().err
-    assert main(["schedule", first, second, "-o", first]) == 2
-    assert "not as an earlier result" in capsys.readouterr().err
-    assert main(["schedule", first, str(tmp_path / "none.json"), "-o", str(out)]) == 2
+    assert main(["schedule", first, second, "-o", new, "--png", new]) == 2
+    assert "is the file of -o, too" in capsys.readouterr().err
+    assert main(["schedule", first, str(tmp_path / "none.json"), "-o", new]) == 2
     assert "none.json" in capsys.readouterr().err
 
 

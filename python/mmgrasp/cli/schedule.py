@@ -5,12 +5,13 @@ from __future__ import annotations
 import argparse
 import json
 import math
+import os
 
 from rich.console import Console
 from rich.table import Table
 
-from .._core import Outcome
-from .._files import PNG, check_file, printable, temporary_room
+from .._core import InvalidInput, Outcome
+from .._files import check_new_file, printable, temporary_room
 from ..part_supply.schedule import Schedule, schedule_plans
 from ..part_supply.schedule_check import ScheduleVerdict
 from ..part_supply.shared_areas import SharedArea
@@ -23,10 +24,12 @@ FILES = ("robot_*.csv", "robot_*.json", LIST)
 
 def run_schedule(arguments: argparse.Namespace, console: Console) -> int:
     """The command; returns its exit code."""
-    check_file(arguments.out, b'{"format": "mmgrasp-schedule"')
+    check_new_file(arguments.out)
     folder = None if arguments.trajectories is None else OutputFolder(arguments.trajectories, FILES)
     if arguments.png is not None:
-        check_file(arguments.png, PNG)
+        check_new_file(arguments.png)
+        if os.path.realpath(arguments.png) == os.path.realpath(arguments.out):
+            raise InvalidInput(f"--png {arguments.png}: is the file of -o, too")
     with Reporter(console) as report:
         found = schedule_plans(arguments.plans, clearance=arguments.clearance, progress=report)
         found.save(arguments.out)
@@ -61,6 +64,9 @@ def _print(found: Schedule, console: Console) -> None:
         row = (str(i + 1), f"{robot.waited:.1f}", printable(where), f"{robot.end:.1f}", f"{robot.earliest_end:.1f}")
         table.add_row(*row)
     console.print(table)
+    for i, robot in enumerate(found.robots):
+        if "drive_by" in robot.course.plan:
+            console.print(f"robot {i + 1} goes as its plan says without its motions in passing", markup=False)
     for area in found.areas:
         console.print(_area_line(area), markup=False, soft_wrap=True)
 

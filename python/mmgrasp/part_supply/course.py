@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
-from .._core import CollisionChecker, JointTrajectory, Robot, RobotMotion, World
+from .._core import CollisionChecker, InvalidInput, JointTrajectory, Robot, RobotMotion, World
 from ..bodies import stored_pose, stored_shape
 from .drives import unloading_after
 
@@ -172,6 +172,10 @@ class RobotBody:
         """Bounds for the arm's joints, whichever opening and part the hand has."""
         table = {joint["name"]: joint for joint in self.robot.joint_table}
         group = self.robot.group(base_link=table[self.joints[0]]["parent"], tip=self._tip)
+        if group.names != self.joints:
+            raise InvalidInput(
+                f"scenario.arm.joints: must be all that move {self._tip}, in order: {', '.join(group.names)}"
+            )
         world = World()
         for name, shapes in self._shapes.items():
             world.add(name, shapes)

@@ -15,8 +15,10 @@ from .._argument_errors import checked
 from .._core import InvalidInput, Outcome
 from .._files import check_file, printable, sha256_of, write_file, write_files
 from .._progress import Progress, growing
+from ..documents.reading import read_json
 from .course import Course
-from .plan_file import read_plan
+from .plan_file import check_form, check_names
+from .plan_reader import plan_to_check
 from .schedule_rules import FORMAT, LEAST_CLEARANCE, MOST_CLEARANCE, MOST_ROBOTS, VERSION, check_same_room
 from .schedule_search import ScheduleSearch
 from .scheduled_robot import ScheduledRobot
@@ -103,39 +105,62 @@ def schedule_plans(
         raise InvalidInput(f"clearance = {clearance:g}: must be in [{LEAST_CLEARANCE:g}, {MOST_CLEARANCE:g}] [m]")
     if not 2 <= len(plans) <= MOST_ROBOTS:
         raise InvalidInput(f"plans: {len(plans)} are given: must be 2 to {MOST_ROBOTS}, one a robot")
-    paths = [Path(os.path.abspath(plan)) for plan in plans]
     labels = [f"robot {i + 1} ({printable(os.fspath(plan))})" for i, plan in enumerate(plans)]
     with growing(progress, labels) as progress:
         tell = progress or (lambda stage, fraction: None)
-        contents = []
-        for i, path in enumerate(paths):
-            tell("reading plans", i / len(paths))
-            contents.append(read_plan(path))
-        check_same_room(contents, [os.fspath(plan) for plan in plans])
-        return _schedule(paths, labels, contents, clearance, tell)
+        given = []
+        for i, (plan, label) in enumerate(zip(plans, labels, strict=True)):
+            tell("reading plans", i / len(plans))
+            given.append(_read(Path(plan), label))
+        check_same_room([one.content for one in given], [os.fspath(plan) for plan in plans])
+        return _schedule(given, clearance, tell)
 
 
-def _schedule(
-    paths: Sequence[Path],
-    labels: Sequence[str],
-    contents: Sequence[dict[str, Any]],
-    clearance: float,
-    tell: Callable[[str, float], None],
-) -> Schedule:
+@dataclass(frozen=True)
+class _GivenPlan:
+    """A plan as it was read."""
+
+    path: Path
+    label: str
+    content: dict[str, Any]
+    sha256: str
+
+
+def _read(path: Path, label: str) -> _GivenPlan:
+    """Raises InvalidInput for a plan that is damaged: the check reads every value."""
+    sha256 = sha256_of(path)
+    root = read_json(path).root
+    check_form(root)
+    check_names(root)
+    if root["outcome"].raw == "solved":
+        with root["scenario"].blamed():
+            plan_to_check(root)
+    return _GivenPlan(Path(os.path.abspath(path)), label, root.raw, sha256)
+
+
+def _schedule(given: Sequence[_GivenPlan], clearance: float, tell: Callable[[str, float], None]) -> Schedule:
     robots: list[ScheduledRobot] = []
     areas: list[SharedArea] = []
-    for i, (path, content, label) in enumerate(zip(paths, contents, labels, strict=True)):
-        tell(label, 0.0)
-        course = Course(content, label)
-        if not course.pieces:
-            raise InvalidInput(f"{label}: does not move in its plan: put it among the obstacles")
-        search = ScheduleSearch(course, robots, clearance, partial(tell, label))
+    for i, plan in enumerate(given):
+        tell(plan.label, 0.0)
+        course = _course_of(plan)
+        search = ScheduleSearch(course, robots, clearance, partial(tell, plan.label))
         found, bound = search.find(), search.find(only_sure=True)
         if found.starts is None:
             outcome = Outcome.infeasible if bound.starts is None else Outcome.not_found
             return Schedule(outcome, clearance, robots, areas, search.obstruction())
-        robot = ScheduledRobot(path, sha256_of(path), course, found.starts, bound.arrival)
+        robot = ScheduledRobot(plan.path, plan.sha256, course, found.starts, bound.arrival)
         for k, other in enumerate(robots):
             areas += shared_areas(k, i, (other, robot), search.meetings[k])
         robots.append(robot)
     return Schedule(Outcome.solved, clearance, robots, areas)
+
+
+def _course_of(plan: _GivenPlan) -> Course:
+    try:
+        course = Course(plan.content, plan.label)
+    except InvalidInput as error:
+        raise InvalidInput(f"{plan.label}: {error}") from None
+    if not course.pieces:
+        raise InvalidInput(f"{plan.label}: does not move in its plan: put it among the obstacles")
+    return course

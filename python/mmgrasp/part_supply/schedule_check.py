@@ -89,6 +89,8 @@ def _check_header(root: Node) -> None:
     root["format"].choice(FORMAT)
     root.read_version(VERSION)
     root.mapping("format version mmgrasp outcome clearance robots areas obstruction")
+    root["mmgrasp"].string()
+    root["areas"].elements()
 
 
 def _number_within(node: Node, least: float, most: float) -> float:
@@ -100,6 +102,7 @@ def _number_within(node: Node, least: float, most: float) -> float:
 def _plan_of(node: Node) -> Node:
     """The plan of one robot; it must be the one that was scheduled."""
     node.mapping("plan sha256 end waited earliest_end pieces")
+    node["earliest_end"].number(least=0)
     path = Path(node["plan"].string())
     if sha256_of(path) != node["sha256"].string():
         node["plan"].fail("the plan has changed since it was scheduled")

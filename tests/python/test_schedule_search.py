@@ -16,8 +16,11 @@ import pytest
 import mmgrasp as mg
 from mmgrasp.cli.commands import main
 from mmgrasp.part_supply import ScenarioPlan, plan_part_supply, schedule_plans, verify_schedule
+from mmgrasp.part_supply.course import Course, Element
+from mmgrasp.part_supply.meetings import Meetings
 from mmgrasp.part_supply.safe_intervals import Interval, earliest_course, free_of, merged
-from schedule_plans import east, north, plan_along, west, write_plans
+from plan_by_hand import URDF
+from schedule_plans import east, north, plan_along, plan_with_pick, west, write_plans
 
 GRID, HORIZON = 0.5, 60.0
 
@@ -76,6 +79,47 @@ def test_intervals() -> None:
     assert free_of([(0.0, 2.0), (3.0, 4.0)]) == [(0.0, 0.0), (2.0, 3.0), (4.0, math.inf)]
     assert free_of([(-1.0, 2.0), (3.0, math.inf)]) == [(2.0, 3.0)]
     assert free_of([]) == [(0.0, math.inf)]
+
+
+def test_cells_hold_at_random_times(tmp_path: Path) -> None:
+    """Outside of the cells no two robots are too close, and in those that are sure always, at times that no knot of the search has."""
+    clearance = 0.1
+    plans = plan_with_pick(0.8), plan_along(north(1.0, -2.0, 2.0), URDF, (0.0, 1.0))
+    first, second = (Course(plan, str(i)) for i, plan in enumerate(plans))
+    meetings = Meetings(first, second, clearance, lambda: None)
+    rng = np.random.default_rng(1)
+    counts = {"safe": 0, "open": 0, "sure": 0}
+    for i, a in enumerate(first.elements):
+        for j, b in enumerate(second.elements):
+            cells = meetings.unsafe(i, j)
+            drawn = rng.uniform(0.0, [a.duration, b.duration], (50, 2))
+            if len(cells):
+                around = rng.uniform(cells[:, [0, 2]].min(axis=0), cells[:, [1, 3]].max(axis=0), (1500, 2))
+                drawn = np.vstack([drawn, around])
+            for t, s in drawn:
+                distance = placed_at(a, t).distance(placed_at(b, s), math.inf)
+                inside = (cells[:, 0] <= t) & (t <= cells[:, 1]) & (cells[:, 2] <= s) & (s <= cells[:, 3])
+                if not inside.any():
+                    assert distance >= clearance - 1e-4
+                    counts["safe"] += 1
+                elif cells[inside, 4].any():
+                    assert distance < clearance + 1e-4
+                    counts["sure"] += 1
+                else:
+                    assert abs(distance - clearance) < 0.05
+                    counts["open"] += 1
+    assert min(counts.values()) > 20, counts
+
+
+def placed_at(element: Element, time: float) -> Any:
+    """The body between two knots, which are so near to each other that a straight line is as good as the motion."""
+
+    def between(rows: np.ndarray) -> np.ndarray:
+        columns = rows.reshape(len(element.times), -1).T
+        return np.array([np.interp(time, element.times, column) for column in columns])
+
+    opening = float(between(element.opening)[0])
+    return element._body.place(between(element.base), between(element.arm), opening, element.held)
 
 
 def test_progress_grows_and_its_errors_pass(tmp_path: Path) -> None:

@@ -53,6 +53,7 @@ def _print(found: Schedule, console: Console) -> None:
     if found.outcome != Outcome.solved:
         console.print(f"no schedule: {found.outcome.name.replace('_', ' ')}", style="bold red", markup=False)
         console.print(f"- {printable(found.obstruction)}", markup=False, soft_wrap=True)
+        console.print("- another order of the plans, or other ends of the drives, may have one", markup=False)
         return
     table = Table(title=f"robots that stay {found.clearance:g} m apart")
     for title in ("robot", "waits [s]", "longest wait", "done at [s]", "proven: not before [s]"):

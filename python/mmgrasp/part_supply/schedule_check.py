@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass, field
-from itertools import combinations
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -29,8 +28,6 @@ class ScheduleVerdict:
     faults: list[checks.Fault]
     robots: int = 0
     clearance: float = 0.0
-    pairs: list[tuple[int, int]] = field(default_factory=list)
-    """Robots that were measured against each other, by their index."""
 
     @property
     def ok(self) -> bool:
@@ -80,7 +77,7 @@ def verify_schedule(schedule: dict[str, Any] | str | os.PathLike[str], *, progre
     rows = [node["pieces"].elements() for node in nodes]
     starts, durations = ([[row[key].number() for row in robot] for robot in rows] for key in ("start", "duration"))
     faults += checks.check_schedule(to_check, starts, durations, clearance, progress=progress)
-    return ScheduleVerdict(faults, len(nodes), clearance, list(combinations(range(len(nodes)), 2)))
+    return ScheduleVerdict(faults, len(nodes), clearance)
 
 
 def _check_header(root: Node) -> None:

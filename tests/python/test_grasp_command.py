@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 from pathlib import Path
 from typing import Any
 
@@ -155,6 +156,18 @@ def test_less_room_around_uncertain_surfaces_is_offered(scanned: Path, capsys: p
     assert row["grasps"]
     with pytest.raises(SystemExit):
         main(["grasp", str(scanned), "--gripper", GRIPPER, "--sigmas", "-1"])
+
+
+def test_a_map_of_other_frames_is_refused(scanned: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The objects are those of another map than the one beside them."""
+    folder = tmp_path / "map"
+    shutil.copytree(scanned, folder)
+    other = mg.ProbabilisticSdf.load(scanned / "map.sdf")
+    assert main(["grasp", str(folder), "--gripper", GRIPPER]) == 0
+    mg.ProbabilisticSdf(voxel=0.002, truncation=other.truncation).save(folder / "map.sdf")
+    capsys.readouterr()
+    assert main(["grasp", str(folder), "--gripper", GRIPPER]) == 2
+    assert "map.sdf" in capsys.readouterr().err
 
 
 def test_where_two_deviations_leave_nothing_less_is_kept_free(

@@ -22,6 +22,7 @@ from ..documents.reading import Node, read_json
 from ..scan.objects import FORMAT as OBJECTS_FORMAT
 from ..scan.objects import VERSION as OBJECTS_VERSION
 from ..scan.objects import pose_to_dict
+from ..scan.progress_file import PROGRESS_FILE, read_scan
 from ..scan.surroundings import Surroundings
 from ..scenario import HandTypes, read_hand_types
 from .console import Reporter
@@ -47,7 +48,7 @@ def run_grasp(arguments: argparse.Namespace, console: Console) -> int:
     types = _read_hand(arguments)
     objects, plane = _read_objects(arguments.map)
     chosen = _chosen(objects, arguments.object, arguments.map)
-    sdf = _core.ProbabilisticSdf.load(str(arguments.map / "map.sdf"))
+    sdf = _read_map(arguments.map)
     tried = (_DEFAULTS["sigmas"], *_LESS_CAUTIOUS) if arguments.sigmas is None else (arguments.sigmas,)
     around = Surroundings(sdf, tried[0]) if types.arms else None
     rows = []
@@ -96,6 +97,12 @@ def _read_hand(arguments: argparse.Namespace) -> HandTypes:
             )
         arms[kind] = arm.at(T_world_root)
     return HandTypes(given.hands, given.robot, arms)
+
+
+def _read_map(folder: Path) -> _core.ProbabilisticSdf:
+    """The map of the frames that the folder lists."""
+    listed = folder / PROGRESS_FILE
+    return read_scan(listed).sdf if listed.exists() else _core.ProbabilisticSdf.load(str(folder / "map.sdf"))
 
 
 def _text(content: dict[str, Any]) -> str:

@@ -5,6 +5,7 @@
 #include "mmgrasp/collision/detail/edge_steps.hpp"
 #include "mmgrasp/collision/detail/placed_bodies.hpp"
 #include "mmgrasp/collision/edge.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "plan_arguments.hpp"
 #include "same_robot.hpp"
 
@@ -227,7 +228,13 @@ PlacedBodies placed_bodies(const std::vector<LinkShape>& shapes, const ArrayLike
 void bind_placed_bodies(py::module_& m) {
   py::class_<PlacedBodies>(m, "_PlacedBodies", "Shapes where they are at one time, one T_world_body (4, 4) a shape.")
       .def(py::init(&placed_bodies), "shapes"_a, "T_world_body"_a)
-      .def("distance", &PlacedBodies::distance, "other"_a, "within"_a);
+      .def(
+          "distance",
+          [](const PlacedBodies& own, const PlacedBodies& other, double within) {
+            require_not_negative(within, "within", "m");
+            return own.distance(other, within);
+          },
+          "other"_a, "within"_a);
 }
 
 }  // namespace

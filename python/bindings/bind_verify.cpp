@@ -1,6 +1,7 @@
 #include <optional>
 
 #include "bindings.hpp"
+#include "mmgrasp/core/limits.hpp"
 #include "mmgrasp/grasp/hand.hpp"
 #include "mmgrasp/verify/path_check.hpp"
 #include "mmgrasp/verify/plan_check.hpp"
@@ -399,6 +400,11 @@ void bind_verify(py::module_& top) {
          const std::vector<std::vector<double>>& durations, double clearance, const Progress& progress) {
         if (plans.size() != starts.size()) throw InvalidInput("starts: must be one list a plan");
         if (plans.size() != durations.size()) throw InvalidInput("durations: must be one list a plan");
+        for (const auto* times : {&starts, &durations}) {
+          const std::string name = times == &starts ? "starts" : "durations";
+          for (const std::vector<double>& own : *times)
+            for (const double time : own) require_number(time, name);
+        }
         std::vector<ScheduledPlan> robots;
         for (std::size_t i = 0; i < plans.size(); ++i) robots.push_back({plans[i], starts[i], durations[i]});
         return LongCall(progress).run(

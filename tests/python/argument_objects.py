@@ -219,6 +219,10 @@ def assembly_grasp() -> mg.gripper_design.AssemblyGrasp:
     return mg.gripper_design.AssemblyGrasp(np.eye(4), contact_length=0.01, contact_width=0.01)
 
 
+def placed_bodies() -> mg._core._PlacedBodies:
+    return mg._core._PlacedBodies([BOX], [POSE])
+
+
 OBJECTS: dict[str, Any] = {
     "WholeBodyProgram": drive_by_program,
     "Robot": lambda: ROBOT,
@@ -251,5 +255,6 @@ OBJECTS: dict[str, Any] = {
     "ObjectRegions": object_regions,
     "RobotMotion": lambda: mg.planning.RobotMotion(OBJECTS["JointTrajectory"]()),
     "BaseGrid": lambda: GRID,
+    "_PlacedBodies": placed_bodies,
     "PlanToCheck": lambda: mg.verify.PlanToCheck(ROBOT.source),
 }

@@ -316,6 +316,7 @@ OTHERS: dict[str, Any] = {
     "tasks": lambda: [],
     "task_times": lambda: [],
     "remaining": lambda: [(0, 0)],
+    "_PlacedBodies.distance.other": lambda: mg._core._PlacedBodies([BOX], [POSE]),
     "other": lambda: mg.Robot.from_strings('<robot name="s"><link name="a"/></robot>'),
     "parent_link": lambda: "tip",
     "tool_link": lambda: "tip",

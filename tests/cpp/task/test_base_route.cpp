@@ -169,6 +169,35 @@ TEST(BaseRoute, ADoorTooNarrowForTheClearanceIsNoWay) {
   EXPECT_THROW(plan_base_route(checker, room.problem.home, {0, 0, 0}, {5, 0, 0}, options), InvalidInput);
 }
 
+/// A rod across the hand, 1.2 m long, and a door of 0.8 m that the robot passes with room to spare.
+TEST(BaseRoute, WhatTheHandHoldsMustPassTheDoorToo) {
+  Room room;
+  room.world.add("wall left", test::box_shape(0.1, 8.0, 1.0), test::at(2.5, 4.4, 0.5));
+  room.world.add("wall right", test::box_shape(0.1, 8.0, 1.0), test::at(2.5, -4.4, 0.5));
+  room.world.add("rod", test::box_shape(0.02, 0.02, 0.02), test::at(0, 0, -5));
+  BaseRouteOptions options;
+  options.bounds = {Eigen::Vector2d(-1, -3), Eigen::Vector2d(6, 3)};
+  const auto outcome = [&](const Eigen::Vector3d& size, double clearance) {
+    World world = room.world;
+    world.remove("rod");
+    world.add("rod", test::box_shape(size.x(), size.y(), size.z()), Pose::Identity());
+    const Pose T_root_hand = room.problem.arm.at(Pose::Identity()).fk(room.problem.home);
+    Pose level = Pose::Identity();  // in the hand, but along the robot's own axes
+    level.linear() = T_root_hand.linear().transpose();
+    world.attach("rod", "tcp", level, {"left_finger", "right_finger", "hand"});
+    CheckerOptions without_self;
+    without_self.check_self = false;
+    CollisionChecker checker(room.problem.arm, world, without_self);
+    options.clearance = clearance;
+    return plan_base_route(checker, room.problem.home, {0, 0, 0}, {5, 0, 0}, options).outcome;
+  };
+  EXPECT_EQ(outcome({0.02, 0.7, 0.02}, 0), Outcome::solved);
+  EXPECT_EQ(outcome({0.02, 1.2, 0.02}, 0), Outcome::not_found) << "it can turn nowhere in the door";
+  EXPECT_EQ(outcome({1.2, 0.02, 0.02}, 0), Outcome::solved) << "along the way it passes";
+  EXPECT_EQ(outcome({0.02, 0.02, 0.02}, 0.1), Outcome::solved);
+  EXPECT_EQ(outcome({0.02, 0.7, 0.02}, 0.1), Outcome::not_found) << "it keeps the clearance as the robot does";
+}
+
 TEST(BaseRoute, WalledInHasNoRoute) {
   Room room;
   for (double s : {-1.0, 1.0}) {

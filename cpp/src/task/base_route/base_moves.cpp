@@ -15,26 +15,30 @@ constexpr double kTurnStep = 0.05;  // [rad]
 constexpr double kNear = 1e-9;      // [m]
 constexpr double kMargin = 1e-3;    // [m] on the quick test with boxes
 
-/// The robot's extent around its root's vertical axis with the arm at home.
+/// The robot's extent around its root's vertical axis with the arm at home, what it holds included.
 struct Extent {
-  double radius = 0, low = 0, high = 0;
+  double radius = 0, low = kInfinity, high = -kInfinity;
+
+  void add(const std::vector<LinkShape>& shapes, const Pose& T_root_body) {
+    for (const LinkShape& shape : shapes) {
+      const Eigen::AlignedBox3d box = shape_bounds(shape.shape, T_root_body * shape.T_link_shape);
+      const Eigen::Vector2d far = box.min().head<2>().cwiseAbs().cwiseMax(box.max().head<2>().cwiseAbs());
+      radius = std::max(radius, far.norm());
+      low = std::min(low, box.min().z());
+      high = std::max(high, box.max().z());
+    }
+  }
 };
 
-Extent robot_extent(const JointGroup& arm, const Eigen::VectorXd& home) {
+Extent robot_extent(const JointGroup& arm, const Eigen::VectorXd& home, const World& world) {
   Poses poses;
   arm.at(Pose::Identity()).link_poses(home, poses);
   Extent extent;
-  bool first = true;
   const std::vector<Link>& links = arm.robot().links();
-  for (std::size_t i = 0; i < links.size(); ++i) {
-    for (const LinkShape& shape : links[i].collisions) {
-      const Eigen::AlignedBox3d box = shape_bounds(shape.shape, poses[i] * shape.T_link_shape);
-      const Eigen::Vector2d far = box.min().head<2>().cwiseAbs().cwiseMax(box.max().head<2>().cwiseAbs());
-      extent.radius = std::max(extent.radius, far.norm());
-      extent.low = first ? box.min().z() : std::min(extent.low, box.min().z());
-      extent.high = first ? box.max().z() : std::max(extent.high, box.max().z());
-      first = false;
-    }
+  for (std::size_t i = 0; i < links.size(); ++i) extent.add(links[i].collisions, poses[i]);
+  for (const auto& entry : world.attached()) {
+    const AttachedObject& held = entry.second;
+    extent.add(held.shapes, poses[arm.robot().link_index(held.link)] * held.T_link_object);
   }
   return extent;
 }
@@ -46,6 +50,18 @@ bool is_ground(const WorldObject& object) {
     const Eigen::Vector3d normal = object.T_world_object.linear() * (item.T_link_shape.linear() * plane->normal);
     return normal.normalized().z() > 1 - 1e-9;
   });
+}
+
+/// What the robot holds is grown by `padding` as well, which a checker's options do for its links alone.
+World with_attached_padded(World world, double padding) {
+  Padding grown = world.padding();
+  grown.attached = std::max(grown.attached, padding);
+  for (const auto& entry : world.attached()) {
+    const auto own = grown.by_name.find(entry.first);
+    if (own != grown.by_name.end()) own->second = std::max(own->second, padding);
+  }
+  world.set_padding(std::move(grown));
+  return world;
 }
 
 World without_ground(World world) {
@@ -67,7 +83,7 @@ CheckerOptions padded_by(CheckerOptions options, double padding) {
 
 BaseClearance::BaseClearance(CollisionChecker& checker, const Eigen::VectorXd& home, double check_step)
     : checker_(checker), home_(home), check_step_(check_step) {
-  const Extent extent = robot_extent(checker.group(), home);
+  const Extent extent = robot_extent(checker.group(), home, checker.world());
   const Padding& padding = checker.world().padding();
   // Grown boxes reach out at their corners by up to sqrt(3) of the padding, the robot's and the object's.
   const double margin = kMargin + 1.75 * (std::max(checker.options().padding, padding.most()) + padding.most());
@@ -91,7 +107,7 @@ void BaseClearance::keep(double clearance, const std::vector<Eigen::Vector3d>& e
   if (!(clearance > 0)) return;
   for (const Eigen::Vector3d& end : ends) ends_.emplace_back(end.head<2>());
   const double between = 0.5 * check_step_ + 0.5 * kTurnStep * radius_;  // no point of the robot gets farther
-  padded_.emplace(checker_.group(), without_ground(checker_.world()),
+  padded_.emplace(checker_.group(), with_attached_padded(without_ground(checker_.world()), clearance + between),
                   padded_by(checker_.options(), clearance + between));
   padded_clearance_ = std::make_unique<BaseClearance>(*padded_, home_, check_step_);
 }

@@ -11,7 +11,8 @@
 
 namespace mmgrasp::detail {
 
-/// Whether a base pose lies in the workspace of the base and the whole robot, arm at home, is free of collisions there.
+/// Whether a base pose lies in the workspace of the base and the whole robot, arm at home, is free of collisions there
+/// with what the checker's world has attached to it.
 class BaseClearance {
  public:
   BaseClearance(CollisionChecker& checker, const Eigen::VectorXd& home, double check_step);

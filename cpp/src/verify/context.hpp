@@ -49,7 +49,7 @@ void check_seals(const PlanToCheck& plan, Faults& faults);
 void check_payload(const PlanToCheck& plan, Faults& faults);
 /// Which part is picked when and where (picks.cpp).
 void check_pick_list(Context& context, Faults& faults);
-/// The five motions of each pick (arm_motions.cpp).
+/// The motions of each pick (arm_motions.cpp).
 void check_arm_motions(const Context& context, Faults& faults, std::size_t& configurations);
 /// Drive and pick in one (drive_by.cpp).
 void check_drive_by(const Context& context, Faults& faults, std::size_t& configurations);

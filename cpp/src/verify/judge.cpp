@@ -259,8 +259,22 @@ Touch Judge::comes_near(const Eigen::VectorXd& arm, double opening, double margi
       if (!stage_->may_touch(name, body.name) && link_comes_near(link, body, margin))
         return {TouchKind::scene, name, body.name};
     }
+    if (attached_ >= 0 && !stage_->may_touch(attached_body_.name, body.name) && attached_comes_near(body, margin))
+      return {TouchKind::attached, attached_body_.name, body.name};
   }
   return {};
+}
+
+bool Judge::attached_comes_near(const PlacedBody& body, double margin) const {
+  for (std::size_t i = 0; i < attached_body_.solids.size(); ++i) {
+    for (std::size_t k = 0; k < body.solids.size(); ++k) {
+      if (attached_body_.bounds[i].exteriorDistance(body.bounds[k]) < margin &&
+          closer_than(margin, attached_body_.solids[i], attached_body_.T_world_shape[i], body.solids[k],
+                      body.T_world_shape[k]))
+        return true;
+    }
+  }
+  return false;
 }
 
 bool Judge::link_comes_near(int link, const PlacedBody& body, double margin) const {

@@ -76,7 +76,8 @@ class Judge {
   void drop();
 
   Touch touch(const Eigen::VectorXd& arm, double opening);
-  /// What the robot's links touch or come closer to than `margin` [m]: bodies of the scene, the ground left out.
+  /// What the robot's links or the attached body touch or come closer to than `margin` [m]: bodies of the scene, the
+  /// ground left out.
   Touch comes_near(const Eigen::VectorXd& arm, double opening, double margin);
   /// From how many sides, 0 to 2, finger links touch the attached body: either side of the middle between the outermost
   /// of them, along the closing axis of the open hand.
@@ -92,6 +93,7 @@ class Judge {
   Touch scene_touch() const;
   Touch attached_touch() const;
   bool link_comes_near(int link, const PlacedBody& body, double margin) const;
+  bool attached_comes_near(const PlacedBody& body, double margin) const;
   bool link_touches(int link, const Solid& solid, const Pose& T, const Bounds& bounds) const;
 
   std::shared_ptr<const Stage> stage_;

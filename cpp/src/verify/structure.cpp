@@ -62,6 +62,7 @@ struct Structure {
   void gripper(ArmSetup& setup, std::vector<int>& finger_links);
   void suction();
   void scalars();
+  void place();
   void body(const CheckedBody& body, const std::string& where, std::set<std::string>& names);
   void scene();
 };
@@ -177,11 +178,7 @@ void Structure::scalars() {
        "arrival_covariance", "must be finite, symmetric and without a negative eigenvalue");
   need(finite(plan.drive_clearance) && plan.drive_clearance >= 0, "drive_clearance",
        text(plan.drive_clearance) + ": must be finite and not negative");
-  need(is_pose(plan.T_base_bin), "place_region", "the bin's pose is not a finite rigid transform");
-  need(finite(Eigen::VectorXd(plan.bin_size)) && plan.bin_size.minCoeff() > 0, "place_region",
-       "the bin's size must be positive");
-  need(plan.capacity >= 0, "place_region", "capacity must not be negative");
-  need(finite(plan.drop_height) && plan.drop_height >= 0, "place_region", "drop_height must not be negative");
+  place();
   need(plan.closing_speed > 0 && plan.closing_speed <= kMostClosingSpeed, "closing_speed",
        text(plan.closing_speed) + ": must be positive and at most " + text(kMostClosingSpeed) + " m/s");
   for (std::size_t i = 0; i < plan.stops.size(); ++i) {
@@ -192,6 +189,26 @@ void Structure::scalars() {
          size > 0 ? "must say of how many arrivals, more than 0, how many serve all parts"
                   : "has arrivals without an arrival_covariance");
   }
+}
+
+/// Where parts go: the bin, or a rectangle at the goal.
+void Structure::place() {
+  need(is_pose(plan.T_base_bin), "place_region", "the bin's pose is not a finite rigid transform");
+  need(finite(Eigen::VectorXd(plan.bin_size)) && plan.bin_size.minCoeff() > 0, "place_region",
+       "the bin's size must be positive");
+  need(plan.capacity >= 0, "place_region", "capacity must not be negative");
+  need(finite(plan.drop_height) && plan.drop_height >= 0, "place_region", "drop_height must not be negative");
+  if (!plan.unload_region) return;
+  const CheckedUnloadRegion& region = *plan.unload_region;
+  need(is_pose(region.T_world_region) && region.T_world_region.linear()(2, 2) > 1 - 1e-9, "unload_region",
+       "its pose must be a finite rigid transform, and level");
+  need(finite(Eigen::VectorXd(region.size)) && region.size.minCoeff() > 0, "unload_region",
+       "its size must be positive");
+  need(finite(region.drop_height) && region.drop_height >= 0, "unload_region", "drop_height must not be negative");
+  need(plan.capacity == 0, "unload_region", "has no bin beside it: capacity must be 0");
+  need(plan.drive_by.empty(), "unload_region", "no part is taken in passing that the hand carries to the goal");
+  need(plan.suction.cups.empty(), "unload_region",
+       "what the base's acceleration pulls at suction cups is not known: they carry nothing on drives");
 }
 
 void Structure::body(const CheckedBody& body, const std::string& where, std::set<std::string>& names) {

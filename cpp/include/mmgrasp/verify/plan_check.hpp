@@ -51,8 +51,10 @@ struct MMGRASP_EXPORT PlanCheckOptions {
 ///   from a release that is none, twice, unknown),
 ///   `closing-time` (outside the motion, or faster than the fingers), `base-limit` (velocity or acceleration of the
 ///   base), `wheel-limit` (rims of its wheels), `base-off-course` (where its velocities do not lead);
-/// - the route: `route-legs` (their number), `route-ends`, `route-not-driveable`, `route-collision`, `too-long`,
-///   `unloading` (at a pick where it cannot be), `capacity` (more parts in the bin than it takes);
+/// - the route: `route-legs` (their number), `route-ends`, `route-not-driveable`, `route-collision` (a part that the
+/// hand
+///   carries included), `route-clearance`, `too-long`,
+///   `unloading` (at a pick where it cannot be), `capacity` (more parts in the bin, or in the hand, than it takes);
 /// - stops: `region-malformed`, `region-missing`, `region-too-small`, `stop-heading`, `stop-radius`,
 ///   `stop-outside-region`, `not-minimal`, `lower-bound`, `not-robust`, `arrival-rate` (arrivals serve all parts more
 ///   or less often than said, by more than chance), `region-inflated` (base poses in it that serve nothing),

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -61,7 +62,7 @@ struct MMGRASP_EXPORT CheckedFinger {
 
 /// One motion of the arm as the plan stores it: times [s] and the joints' values at them [rad or m, and per second].
 struct MMGRASP_EXPORT CheckedMotion {
-  std::string kind;  ///< transit, approach, lift, transfer, retreat
+  std::string kind;  ///< transit, approach, lift, transfer, retreat; stow after lift where the hand carries the part
   double opening = 0;
   bool attached = false;
   std::vector<double> times;
@@ -125,7 +126,15 @@ struct MMGRASP_EXPORT CheckedLegValues {
   double length = 0, turning = 0, duration = 0;
 };
 
-/// A drive to the goal, where the bin is emptied, and back to the stop where parts are left (no poses: it goes on).
+/// Where parts are let go at the goal that the hand carried there: a rectangle in the world.
+struct MMGRASP_EXPORT CheckedUnloadRegion {
+  Pose T_world_region = Pose::Identity();            ///< Its middle, z up.
+  Eigen::Vector2d size = Eigen::Vector2d(0.3, 0.3);  ///< x and y [m].
+  double drop_height = 0.03;                         ///< Height above it at which parts are released [m].
+};
+
+/// A drive to the goal, where the bin is emptied or the part in the hand let go, and back to the stop where parts are
+/// left (no poses: it goes on).
 struct MMGRASP_EXPORT CheckedUnloading {
   int after_pick = -1;  ///< Index into the plan's picks.
   std::vector<Eigen::Vector3d> to_goal, back;
@@ -201,6 +210,8 @@ struct MMGRASP_EXPORT PlanToCheck {
   Eigen::Vector2d bin_size = Eigen::Vector2d(0.3, 0.3);  ///< Inner x and y [m].
   double drop_height = 0.03;  ///< Height above the bin's top plane at which parts are released [m].
   int capacity = 0;           ///< So many parts fill the bin; 0: it takes all.
+  /// Set: the robot has no bin. The hand carries one part at a time to the goal, where it is let go over this.
+  std::optional<CheckedUnloadRegion> unload_region;
 
   // What is claimed of base regions and stops
   CheckedGrid grid;

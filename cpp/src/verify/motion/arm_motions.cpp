@@ -15,12 +15,12 @@
 namespace mmgrasp::verify::detail {
 namespace {
 
-enum Kind { kTransit, kApproach, kLift, kTransfer, kRetreat, kKinds };
-constexpr std::array<const char*, kKinds> kKindNames = {"transit", "approach", "lift", "transfer", "retreat"};
+enum Kind { kTransit, kApproach, kLift, kStow, kTransfer, kRetreat, kKinds };
+constexpr std::array<const char*, kKinds> kKindNames = {"transit", "approach", "lift", "stow", "transfer", "retreat"};
 constexpr double kOpening = 1e-6;  // [m]
 
 bool has_part_attached(int kind) {
-  return kind == kLift || kind == kTransfer;
+  return kind == kLift || kind == kStow || kind == kTransfer;
 }
 
 void check_follows(const CheckedMotion& before, const CheckedMotion& after, const std::string& where, Faults& faults) {
@@ -37,7 +37,11 @@ class PickCheck {
         index_(index),
         judge_(judge),
         hand_(context, judge, faults),
-        faults_(faults) {}
+        faults_(faults) {
+    for (int kind = 0; kind < kKinds; ++kind) {
+      if (kind != kStow || carries()) kinds_.push_back(kind);
+    }
+  }
 
   /// False when its motions hold no usable numbers.
   bool run() {
@@ -62,21 +66,21 @@ class PickCheck {
  private:
   std::string name(const std::string& kind) const { return context_.pick_name(index_) + ", " + kind; }
   std::string name(int kind) const { return name(kKindNames[kind]); }
-  const CheckedMotion& motion(int kind) const { return pick_.motions[kind]; }
+  /// Whether the part is brought to the goal in the hand, and let go there.
+  bool carries() const { return plan_.unload_region.has_value(); }
+  const CheckedMotion& motion(int kind) const { return pick_.motions[carries() || kind < kStow ? kind : kind - 1]; }
   void fault(const char* code, const std::string& where, const std::string& message) {
     faults_.push_back({code, where, message});
   }
 
   bool check_order() {
-    std::string found;
-    bool good = pick_.motions.size() == kKinds;
-    for (std::size_t i = 0; i < pick_.motions.size(); ++i) {
-      found += (i ? ", " : "") + pick_.motions[i].kind;
-      good = good && pick_.motions[i].kind == kKindNames[i];
-    }
+    std::string found, wanted;
+    for (const CheckedMotion& m : pick_.motions) found += (found.empty() ? "" : ", ") + m.kind;
+    for (const int kind : kinds_) wanted += (wanted.empty() ? "" : ", ") + std::string(kKindNames[kind]);
+    bool good = pick_.motions.size() == kinds_.size();
+    for (std::size_t i = 0; good && i < kinds_.size(); ++i) good = pick_.motions[i].kind == kKindNames[kinds_[i]];
     if (!good) {
-      fault("motion-order", context_.pick_name(index_),
-            "motions are [" + found + "], must be [transit, approach, lift, transfer, retreat]");
+      fault("motion-order", context_.pick_name(index_), "motions are [" + found + "], must be [" + wanted + "]");
     }
     return good;
   }
@@ -95,8 +99,13 @@ class PickCheck {
     return true;
   }
 
+  /// Once the part was brought there, the base stands where it is let go.
+  void stand_where_released() {
+    if (carries()) judge_.set_base(plan_.goal);
+  }
+
   void check_openings() {
-    for (int kind = 0; kind < kKinds; ++kind) {
+    for (const int kind : kinds_) {
       const CheckedMotion& m = motion(kind);
       const double width = grasp_->opening;
       if (!(m.opening >= -kOpening && m.opening <= plan_.max_opening + kOpening)) {
@@ -137,10 +146,11 @@ class PickCheck {
     };
     at_home(motion(kTransit).positions.front(), kTransit, "does not start at home");
     at_home(motion(kRetreat).positions.back(), kRetreat, "does not end at home");
-    for (int kind = 1; kind < kKinds; ++kind) {
-      check_follows(motion(kind - 1), motion(kind), name(kind), faults_);
-      const double jump = largest_of(motion(kind - 1).velocities.back() - motion(kind).velocities.front());
-      if (jump > kRest) fault("discontinuous", name(kind), "a velocity jumps by " + text(jump) + " at its start");
+    for (std::size_t i = 1; i < kinds_.size(); ++i) {
+      const CheckedMotion &before = motion(kinds_[i - 1]), &after = motion(kinds_[i]);
+      check_follows(before, after, name(kinds_[i]), faults_);
+      const double jump = largest_of(before.velocities.back() - after.velocities.front());
+      if (jump > kRest) fault("discontinuous", name(kinds_[i]), "a velocity jumps by " + text(jump) + " at its start");
     }
     const auto rest = [this](const Eigen::VectorXd& v, int kind, const char* end) {
       check_rest(v, name(kind), end, faults_);
@@ -149,6 +159,9 @@ class PickCheck {
     rest(motion(kApproach).velocities.back(), kApproach, "end");
     rest(motion(kTransfer).velocities.back(), kTransfer, "end");
     rest(motion(kRetreat).velocities.back(), kRetreat, "end");
+    if (!carries()) return;
+    at_home(motion(kStow).positions.back(), kStow, "does not end at home, where the base drives");
+    rest(motion(kStow).velocities.back(), kStow, "end");
   }
 
   void check_poses() {
@@ -159,11 +172,13 @@ class PickCheck {
     check_approach(context_, judge_.tip(motion(kApproach).positions.front()), T_world_grasp, name(kApproach), faults_);
     check_lift(context_, judge_.tip(motion(kLift).positions.front()), judge_.tip(motion(kLift).positions.back()),
                name(kLift), faults_);
+    stand_where_released();
     const Pose T_world_released = judge_.tip(motion(kTransfer).positions.back()) * T_tip_part_;
     check_release(context_, *part_, judge_.T_world_root(), T_world_released, name(kTransfer), faults_);
   }
 
   void check_collisions() {
+    judge_.set_base(plan_.stops[pick_.stop].pose);
     hand_.check_fingers(plan_.home, 0, motion(kTransit).opening,
                         context_.pick_name(index_) + ", fingers opening at home");
     walk(kTransit);
@@ -181,10 +196,13 @@ class PickCheck {
     hand_.check_fingers(at_grasp, motion(kApproach).opening, grasp_->opening,
                         context_.pick_name(index_) + ", fingers closing");
     walk(kLift);
+    if (carries()) walk(kStow);
+    stand_where_released();
     walk(kTransfer);
     judge_.drop();
-    hand_.check_fingers(motion(kTransfer).positions.back(), grasp_->opening, motion(kRetreat).opening,
-                        context_.pick_name(index_) + ", fingers opening over the bin");
+    hand_.check_fingers(
+        motion(kTransfer).positions.back(), grasp_->opening, motion(kRetreat).opening,
+        context_.pick_name(index_) + ", fingers opening over the " + (carries() ? "unload region" : "bin"));
     walk(kRetreat);
     hand_.check_fingers(plan_.home, motion(kRetreat).opening, 0,
                         context_.pick_name(index_) + ", fingers closing at home");
@@ -220,6 +238,7 @@ class PickCheck {
   const PlanToCheck& plan_;
   const CheckedPick& pick_;
   std::size_t index_;
+  std::vector<int> kinds_;  ///< Those of its motions, in order.
   Judge& judge_;
   HandCheck hand_;
   Faults& faults_;

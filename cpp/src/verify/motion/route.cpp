@@ -72,15 +72,17 @@ class RouteCheck {
  private:
   static std::string name(std::size_t leg) { return "route leg " + std::to_string(leg); }
 
-  /// "capacity": never more parts in the bin than it takes; "unloading": at picks in order, not after the last one.
+  /// "capacity": never more parts in the bin than it takes, one in a hand that carries them to the goal; "unloading":
+  /// at picks in order, not after the last one.
   void check_capacity() {
     int emptied = -1;  // the pick after which it was emptied last
     const int last = static_cast<int>(plan_.picks.size()) - 1;
+    const int capacity = plan_.unload_region ? 1 : plan_.capacity;
     const auto count = [&](int up_to, const std::string& where) {
-      if (plan_.capacity <= 0 || up_to - emptied <= plan_.capacity) return;
-      faults_.push_back(
-          {"capacity", where,
-           std::to_string(up_to - emptied) + " parts are in the bin, which takes " + std::to_string(plan_.capacity)});
+      if (capacity <= 0 || up_to - emptied <= capacity) return;
+      faults_.push_back({"capacity", where,
+                         std::to_string(up_to - emptied) + " parts are in the " +
+                             (plan_.unload_region ? "hand" : "bin") + ", which takes " + std::to_string(capacity)});
     };
     for (const CheckedUnloading& unloading : plan_.unloadings) {
       if (unloading.after_pick <= emptied || unloading.after_pick >= last) {
@@ -105,8 +107,10 @@ class RouteCheck {
       const int by = context_.picked_by[part];
       judge_.set_present(context_.body_of_part(static_cast<int>(part)), by < 0 || by > pick);
     }
+    hold_part_of(pick);
     check_drive(unloading.to_goal, plan_.stops[stop].pose, plan_.goal, &unloading.to_goal_values,
                 where + ", to the goal");
+    let_go();
     const bool returns = plan_.picks[pick + 1].stop == stop;
     if (returns) {
       check_drive(unloading.back, plan_.goal, plan_.stops[stop].pose, &unloading.back_values, where + ", back");
@@ -130,8 +134,37 @@ class RouteCheck {
     const Eigen::Vector3d from = leg == 0 ? plan_.start : left_from(leg - 1);
     const Eigen::Vector3d to = leg + 1 >= plan_.route.size() ? plan_.goal : stop_pose(leg);
     set_parts_on_leg(leg);
+    hold_part_of(held_on_leg(leg));
     check_drive(plan_.route[leg], from, to, leg < plan_.leg_values.size() ? &plan_.leg_values[leg] : nullptr,
                 name(leg));
+    let_go();
+  }
+
+  /// The last pick at the stops before this leg, where its part was not brought to the goal on a drive of its own; -1:
+  /// none.
+  int held_on_leg(std::size_t leg) const {
+    int last = -1;
+    for (int pick = 0; pick < static_cast<int>(plan_.picks.size()); ++pick) {
+      if (plan_.picks[pick].stop < static_cast<int>(leg)) last = pick;
+    }
+    const bool unloaded = std::any_of(plan_.unloadings.begin(), plan_.unloadings.end(),
+                                      [&](const CheckedUnloading& unloading) { return unloading.after_pick >= last; });
+    return unloaded ? -1 : last;
+  }
+
+  /// The part of a pick rides in the hand as its grasp says, where the robot has no bin for it.
+  void hold_part_of(int pick) {
+    if (!plan_.unload_region || pick < 0) return;
+    const int part = context_.pick_part[pick], grasp = plan_.picks[pick].grasp;
+    if (part < 0 || grasp < 0 || grasp >= static_cast<int>(plan_.parts[part].grasps.size())) return;  // said already
+    const CheckedGrasp& held = plan_.parts[part].grasps[grasp];
+    judge_.hold(context_.body_of_part(part), held.T_object_hand.inverse());
+    opening_ = held.opening;
+  }
+
+  void let_go() {
+    judge_.drop();
+    opening_ = 0;
   }
 
   /// One drive, with the parts in the scene that are there; `values`: what is said about it, or nothing.
@@ -197,7 +230,7 @@ class RouteCheck {
         const Eigen::Vector3d pose = poses[i] - step * (1 - k / steps);
         judge_.set_base(pose);
         const std::string at = where + ", base at " + text(pose);
-        if (const Touch touch = judge_.touch(plan_.home, 0)) {
+        if (const Touch touch = judge_.touch(plan_.home, opening_)) {
           faults_.push_back({"route-collision", at, "'" + touch.a + "' touches '" + touch.b + "'"});
           return;
         }
@@ -210,7 +243,7 @@ class RouteCheck {
 
   bool keeps_clearance(const std::string& where) {
     if (plan_.drive_clearance <= kRounding) return true;
-    const Touch near = judge_.comes_near(plan_.home, 0, plan_.drive_clearance - kRounding);
+    const Touch near = judge_.comes_near(plan_.home, opening_, plan_.drive_clearance - kRounding);
     if (!near) return true;
     faults_.push_back({"route-clearance", where,
                        "'" + near.a + "' comes closer to '" + near.b + "' than the " + text(plan_.drive_clearance) +
@@ -222,6 +255,7 @@ class RouteCheck {
   const PlanToCheck& plan_;
   Judge& judge_;
   Faults& faults_;
+  double opening_ = 0;  ///< Of the fingers on the drive [m]: that of the grasp while they hold a part.
 };
 
 /// The configuration in which the robot drives, where it stands first.

@@ -60,13 +60,18 @@ void check_lift(const Context& context, const Pose& T_world_start, const Pose& T
 void check_release(const Context& context, const CheckedPart& part, const Pose& T_world_root,
                    const Pose& T_world_released, const std::string& where, Faults& faults) {
   const PlanToCheck& plan = context.plan;
-  const Pose T_world_bin = T_world_root * plan.T_base_bin;
-  const Eigen::Vector3d in_bin = T_world_bin.inverse() * T_world_released.translation();
-  if (std::abs(in_bin.x()) > 0.5 * plan.bin_size.x() || std::abs(in_bin.y()) > 0.5 * plan.bin_size.y()) {
+  const bool in_bin = !plan.unload_region;
+  const CheckedUnloadRegion over =
+      in_bin ? CheckedUnloadRegion{T_world_root * plan.T_base_bin, plan.bin_size, plan.drop_height}
+             : *plan.unload_region;
+  const std::string name = in_bin ? "bin" : "unload region";
+  const Pose T_region_released = over.T_world_region.inverse() * T_world_released;
+  const Eigen::Vector3d at = T_region_released.translation();
+  if (std::abs(at.x()) > 0.5 * over.size.x() || std::abs(at.y()) > 0.5 * over.size.y()) {
     faults.push_back({"release-outside", where,
-                      "the part is let go at (" + text(in_bin.x()) + ", " + text(in_bin.y()) +
-                          ") m from the bin's middle, the bin is " + text(plan.bin_size.x()) + " x " +
-                          text(plan.bin_size.y()) + " m"});
+                      "the part is let go at (" + text(at.x()) + ", " + text(at.y()) + ") m from the " + name +
+                          "'s middle, the " + name + " is " + text(over.size.x()) + " x " + text(over.size.y()) +
+                          " m"});
   }
   // The turn since it lay: about the vertical only, if the vertical is where it was.
   const Eigen::Matrix3d turn = T_world_released.linear() * part.body.T_world_body.linear().transpose();
@@ -74,11 +79,11 @@ void check_release(const Context& context, const CheckedPart& part, const Pose& 
   if (tilt > kLevel) {
     faults.push_back({"release-tilted", where, "the part is let go tilted by " + text(tilt) + " rad from how it lay"});
   }
-  const double height = lowest_z(part.body.shapes, T_world_bin.inverse() * T_world_released);
-  if (std::abs(height - plan.drop_height) > kDrop) {
+  const double height = lowest_z(part.body.shapes, T_region_released);
+  if (std::abs(height - over.drop_height) > kDrop) {
     faults.push_back({"release-height", where,
-                      "the part's lowest point is " + text(height) + " m over the bin's top, must be " +
-                          text(plan.drop_height) + " m"});
+                      "the part's lowest point is " + text(height) + " m over the " + name +
+                          (in_bin ? "'s top, must be " : ", must be ") + text(over.drop_height) + " m"});
   }
 }
 

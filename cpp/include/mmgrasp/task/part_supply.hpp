@@ -43,9 +43,9 @@ struct MMGRASP_EXPORT Obstruction {
   double needed_opening = 0;
 };
 
-/// A drive to the goal with a full bin, which is emptied there. Parts may be left at the stop that it leaves.
+/// A drive to the goal to empty the full bin, or to let go the part in the hand. Parts may be left at its stop.
 struct MMGRASP_EXPORT Unloading {
-  int after_pick = -1;  ///< Index of the plan's pick that filled the bin.
+  int after_pick = -1;  ///< Index of the plan's pick that filled bin or hand.
   BasePath to_goal;     ///< From the stop of that pick.
   BasePath back;        ///< To the same stop, where parts are left; without poses: the next leg of the route goes on.
 };

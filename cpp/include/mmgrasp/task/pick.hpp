@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,7 @@
 namespace mmgrasp {
 
 /// What the arm does in one motion of a pick.
-enum class MotionKind { transit, approach, lift, transfer, retreat };
+enum class MotionKind { transit, approach, lift, stow, transfer, retreat };
 MMGRASP_EXPORT const char* to_string(MotionKind kind);
 
 /// One timed arm motion of a pick.
@@ -27,16 +28,18 @@ struct MMGRASP_EXPORT PickMotion {
 };
 
 /// Home - transit to the pre-grasp - approach straight - (close) - lift straight - transfer to where the object goes -
-/// (open) - retreat to home.
+/// (open) - retreat to home. Where the object goes from another base pose: lift - stow, to home with the object in the
+/// hand - the drive, which is no part of the pick - transfer from home - (open) - retreat to home.
 struct MMGRASP_EXPORT Pick {
   Outcome outcome = Outcome::not_found;
-  int stop = -1;                    ///< Index of the plan's stop; -1: of no plan.
-  PartRef part;                     ///< The part of a part-supply problem; no tray for other objects.
-  int grasp = -1;                   ///< Index into the object's grasps.
-  std::vector<PickMotion> motions;  ///< transit, approach, lift, transfer, retreat; without a place the first three.
-  Rejections rejections;            ///< Grasps (and their configurations) rejected on the way.
-  std::string failed_at;            ///< With no solution: the stage at which most candidates fell.
-  double duration() const;          ///< [s]
+  int stop = -1;   ///< Index of the plan's stop; -1: of no plan.
+  PartRef part;    ///< The part of a part-supply problem; no tray for other objects.
+  int grasp = -1;  ///< Index into the object's grasps.
+  /// transit, approach, lift, transfer, retreat; without a place the first three; stow before a drive to the place.
+  std::vector<PickMotion> motions;
+  Rejections rejections;    ///< Grasps (and their configurations) rejected on the way.
+  std::string failed_at;    ///< With no solution: the stage at which most candidates fell.
+  double duration() const;  ///< [s]
 };
 
 /// Straight moves before and after a pick's grasp, and how much planning may be spent on it.
@@ -62,7 +65,10 @@ struct MMGRASP_EXPORT PickProblem {
   Eigen::VectorXd home;       ///< Arm configuration at the beginning and at the end, fingers closed.
   std::vector<Pose> places;   ///< World poses of the object at which it may be released; empty: it stays in the hand.
   PickOptions options;
-  double mass = 0;     ///< What the object weighs [kg]; 0: not known, which suction cups cannot hold.
+  double mass = 0;  ///< What the object weighs [kg]; 0: not known, which suction cups cannot hold.
+  /// Where the robot's root stands when it releases the object, which it holds at home on the way there: a drive that
+  /// the caller plans. None: it is released from where it is picked. Not for suction cups.
+  std::optional<Pose> T_world_root_at_place = {};
   void check() const;  ///< Throws InvalidInput naming field, value and rule.
 };
 
@@ -85,14 +91,16 @@ struct MMGRASP_EXPORT StopPicks {
 
 /// Every pick of a stop, from where the base really stands: for what was measured after arriving. Those of the target
 /// parts of these trays that are among `remaining`, the parts still in place; parts nearest to the base first, later
-/// where others must leave before. Motions join as plain numbers, beginning at home. Planned in parallel, the same
+/// where others must leave before. Motions join as plain numbers, beginning at home; with an unload_region the drives
+/// between stop and goal are not planned. Planned in parallel, the same
 /// answer at any thread count. Throws InvalidInput when the robot at home is not free at the base pose.
 MMGRASP_EXPORT StopPicks plan_stop_picks(const PartSupplyProblem& problem, const ReachDatabase& database,
                                          const Eigen::Vector3d& base_pose, const std::vector<TrayId>& trays,
                                          const std::vector<PartRef>& remaining, const Monitor& monitor = {});
 
-/// Picks a part of a part-supply problem from a base pose and puts it into the bin on the robot. `remaining` are the
-/// parts still in place, the picked one among them.
+/// Picks a part of a part-supply problem from a base pose and puts it into the bin on the robot, or, with an
+/// unload_region, lets it go at the goal (the drive there is not planned). `remaining` are the parts still in place,
+/// the picked one among them.
 MMGRASP_EXPORT Pick plan_pick(const PartSupplyProblem& problem, const ReachDatabase& database,
                               const Eigen::Vector3d& base_pose, PartRef part, const std::vector<PartRef>& remaining,
                               const Monitor& monitor = {});

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,15 @@ struct MMGRASP_EXPORT PlaceRegion {
   /// So many parts fill the bin; then the robot drives to the goal, where it is emptied, and on from there. 0: it takes
   /// all.
   int capacity = 0;
+};
+
+/// Where a robot without a bin lets go what it carried to the goal in its hand: a rectangle in the world, as of a bin,
+/// a chute or a conveyor that stands there as an object of the scene. Parts are released over it as over a PlaceRegion,
+/// and are no obstacles any more.
+struct MMGRASP_EXPORT UnloadRegion {
+  Pose T_world_region = Pose::Identity();            ///< Its middle, z up.
+  Eigen::Vector2d size = Eigen::Vector2d(0.3, 0.3);  ///< x and y [m], > 0.
+  double drop_height = 0.03;                         ///< Height above it at which parts are released [m], >= 0.
 };
 
 /// The base poses tried around a tray: how dense, how far away, and with how many guesses for the arm.
@@ -114,6 +124,9 @@ struct MMGRASP_EXPORT PartSupplyProblem {
   /// Drives keep this far from all but the ground wherever the base is farther than kNearEnds from both their ends [m];
   /// 0: not asked for, or in [0.001, 10]. Motions in passing do not keep it.
   double drive_clearance = 0;
+  /// Set: there is no bin, `place_region` is not used. The robot drives to the goal with each part in its hand, the arm
+  /// at home, lets it go over this region from there, and drives back for the next part. Not for suction cups.
+  std::optional<UnloadRegion> unload_region = {};
   /// Throws InvalidInput naming the field, the value and the rule.
   void check() const;
 };

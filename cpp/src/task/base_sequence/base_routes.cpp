@@ -16,12 +16,6 @@ std::array<double, 6> key_of(const Eigen::Vector3d& from, const Eigen::Vector3d&
   return {from.x(), from.y(), from.z(), to.x(), to.y(), to.z()};
 }
 
-CheckerOptions with_padding(double padding) {
-  CheckerOptions options;
-  options.padding = padding;
-  return options;
-}
-
 /// Searches in ever larger cells until one search does not give up; only a way that is found is an answer.
 template <class Search>
 BasePath search_coarser(const Search& search, double first) {
@@ -38,20 +32,26 @@ BasePath search_coarser(const Search& search, double first) {
 
 }  // namespace
 
+CheckerOptions drive_padding() {
+  CheckerOptions options;
+  options.padding = kPadding;
+  return options;
+}
+
 BaseRoutes::BaseRoutes(const PartSupplyProblem& problem, const Monitor& monitor)
     : problem_(problem),
       monitor_(monitor),
-      padded_(problem.arm, world_with_parts(problem, all_parts(problem)), with_padding(kPadding)),
+      padded_(problem.arm, world_with_parts(problem, all_parts(problem)), drive_padding()),
       bare_(problem.arm, world_with_parts(problem, all_parts(problem))) {}
 
-BasePath BaseRoutes::plan(CollisionChecker& padded, CollisionChecker& bare, const Eigen::Vector3d& from,
-                          const Eigen::Vector3d& to, const Monitor& monitor) const {
+BasePath plan_drive(const PartSupplyProblem& problem, CollisionChecker& padded, CollisionChecker& bare,
+                    const Eigen::Vector3d& from, const Eigen::Vector3d& to, const Monitor& monitor) {
   const auto search = [&](CollisionChecker& checker, double resolution) {
     BaseRouteOptions options;
-    options.base = problem_.robot.base();
+    options.base = problem.robot.base();
     options.resolution = resolution;
-    options.clearance = problem_.drive_clearance;
-    return plan_base_route(checker, problem_.home, from, to, options, monitor);
+    options.clearance = problem.drive_clearance;
+    return plan_base_route(checker, problem.home, from, to, options, monitor);
   };
   const auto search_both = [&](double resolution) {
     BasePath path = search(padded, resolution);
@@ -59,7 +59,7 @@ BasePath BaseRoutes::plan(CollisionChecker& padded, CollisionChecker& bare, cons
         path.outcome != Outcome::solved && path.outcome != Outcome::stopped && path.outcome != Outcome::timeout;
     return is_narrow ? search(bare, resolution) : path;
   };
-  const double asked = problem_.options.route_resolution;
+  const double asked = problem.options.route_resolution;
   double first = asked;
   while (2 * first <= kUsual) first *= 2;
   BasePath path = search_both(first);
@@ -89,7 +89,8 @@ void BaseRoutes::prepare(const std::vector<std::pair<Eigen::Vector3d, Eigen::Vec
       open.size(), problem_.options.threads,
       [&](std::size_t item, int worker) {  // worker 0 is the calling thread, which may report
         CollisionChecker padded = padded_.clone(), bare = bare_.clone();
-        paths[item] = plan(padded, bare, open[item].first, open[item].second, worker == 0 ? monitor_ : quiet);
+        const Monitor& monitor = worker == 0 ? monitor_ : quiet;
+        paths[item] = plan_drive(problem_, padded, bare, open[item].first, open[item].second, monitor);
       },
       monitor_, "route");
   if (!done) return;

@@ -13,6 +13,13 @@
 
 namespace mmgrasp::detail {
 
+/// A drive with the arm at home, tried in cells of several sizes, with the `padded` checker first.
+BasePath plan_drive(const PartSupplyProblem& problem, CollisionChecker& padded, CollisionChecker& bare,
+                    const Eigen::Vector3d& from, const Eigen::Vector3d& to, const Monitor& monitor);
+
+/// Links and what is attached to them, grown by what drives keep to the scene where they can.
+CheckerOptions drive_padding();
+
 /// Plans drives between base poses and remembers them; keeps a little away from the scene where it can.
 class BaseRoutes {
  public:
@@ -27,8 +34,6 @@ class BaseRoutes {
 
  private:
   using Key = std::array<double, 6>;
-  BasePath plan(CollisionChecker& padded, CollisionChecker& bare, const Eigen::Vector3d& from,
-                const Eigen::Vector3d& to, const Monitor& monitor) const;
 
   const PartSupplyProblem& problem_;
   const Monitor& monitor_;

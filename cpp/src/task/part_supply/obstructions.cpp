@@ -8,9 +8,11 @@ namespace mmgrasp::detail {
 namespace {
 
 /// What may help against candidates that fell at this stage of a pick.
-std::string motion_advice(const std::string& stage) {
+std::string motion_advice(const std::string& stage, bool carries) {
   if (stage == "approach") return "shorten approach_distance or make room in front of the part";
   if (stage == "lift") return "lower lift_height or make room above the part";
+  if (stage == "release" && carries)
+    return "move unload_region or the goal to where the arm can hold a part level over it";
   if (stage == "release") return "move the bin (place_region) to where the arm can hold a part level over it";
   if (stage == "close") return "leave room for the fingers beside the part";
   return "raise motion_time_limit, or choose another home configuration";
@@ -67,6 +69,22 @@ Obstruction explain_route(const Eigen::Vector3d& from, bool from_stop, const Eig
   return obstruction;
 }
 
+Obstruction explain_held_drive(const PartSupplyProblem& problem, const Eigen::Vector3d& base_pose, PartRef part,
+                               const BasePath& searched) {
+  Obstruction obstruction;
+  obstruction.tray = tray_of(problem, part.tray).name;
+  obstruction.part = part_of(problem, part).name;
+  obstruction.stage = "route";
+  const std::string with = " with part '" + obstruction.part + "' in the hand";
+  const std::string ends = ends_of_drive(base_pose, true, " to ", problem.goal, "");
+  obstruction.message =
+      (searched.outcome == Outcome::timeout ? "the search for a drive from " + ends + with + " gave up"
+                                            : "no drive from " + ends + with + " was found") +
+      ", by whichever of its grasps the part is held: widen the way, lower drive_clearance if one is asked for, or "
+      "choose a home that holds parts nearer to the robot";
+  return obstruction;
+}
+
 Obstruction explain_motion(const PartSupplyProblem& problem, const Eigen::Vector3d& base_pose, const Pick& failed,
                            const std::vector<std::string>& remedies) {
   Obstruction obstruction;
@@ -79,7 +97,7 @@ Obstruction explain_motion(const PartSupplyProblem& problem, const Eigen::Vector
                         failed.rejections.summary() + "): ";
   for (const std::string& remedy : remedies)
     obstruction.message += (&remedy == &remedies.front() ? "it is picked when you " : ", or ") + remedy;
-  if (remedies.empty()) obstruction.message += motion_advice(failed.failed_at);
+  if (remedies.empty()) obstruction.message += motion_advice(failed.failed_at, problem.unload_region.has_value());
   return obstruction;
 }
 

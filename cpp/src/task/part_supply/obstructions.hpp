@@ -24,6 +24,11 @@ Obstruction explain_robustness(const RobustnessResult& check, const std::vector<
 Obstruction explain_route(const Eigen::Vector3d& from, bool from_stop, const Eigen::Vector3d& to,
                           const std::string& tray, const BasePath& searched, double smaller_clearance);
 
+/// Explains that no drive leads from a base pose to the goal with a part in the hand; `searched`: what came of the last
+/// search.
+Obstruction explain_held_drive(const PartSupplyProblem& problem, const Eigen::Vector3d& base_pose, PartRef part,
+                               const BasePath& searched);
+
 /// Explains that no arm motion was found for this pick from a base pose; `remedies` as of pick_remedies().
 Obstruction explain_motion(const PartSupplyProblem& problem, const Eigen::Vector3d& base_pose, const Pick& failed,
                            const std::vector<std::string>& remedies);

@@ -10,6 +10,7 @@
 #include "task/base_region/region_search.hpp"
 #include "task/base_region/search_area.hpp"
 #include "task/base_sequence/base_routes.hpp"
+#include "task/base_sequence/held_drives.hpp"
 #include "task/part_supply/alternative_base_poses.hpp"
 #include "task/part_supply/arrivals.hpp"
 #include "task/part_supply/impossible.hpp"
@@ -18,6 +19,7 @@
 #include "task/part_supply/plan_intersections.hpp"
 #include "task/part_supply/stop_robustness.hpp"
 #include "task/pick/joined_motions.hpp"
+#include "task/pick/search_pick.hpp"
 #include "task/pick/stop_picks.hpp"
 #include "task/problem/scene.hpp"
 #include "task/problem/standing.hpp"
@@ -59,7 +61,12 @@ class StageClock {
 class PartSupply {
  public:
   PartSupply(const PartSupplyProblem& problem, const ReachDatabase& database, const Monitor& monitor)
-      : problem_(problem), database_(database), monitor_(monitor) {}
+      : problem_(problem), database_(database), monitor_(monitor), held_drives_(problem, monitor) {
+    if (!problem.unload_region) return;
+    held_drive_ = [this](const Eigen::Vector3d& pose, PartRef part, int grasp, const std::vector<PartRef>& remaining) {
+      return held_drives_.plan(pose, part, grasp, remaining);
+    };
+  }
 
   PartSupplyPlan run() {
     problem_.check();
@@ -297,6 +304,10 @@ class PartSupply {
     for (const Pick& pick : stop.failed) {
       const bool first = &pick == &stop.failed.front();
       std::vector<std::string> remedies;
+      if (pick.failed_at == kHeldDriveStage) {
+        obstructed(explain_held_drive(problem_, stop.pose, pick.part, held_drives_.found(stop.pose, pick.part)));
+        continue;
+      }
       if (first || !known.empty())
         remedies = pick_remedies(problem_, database_, stop.pose, pick.part, stop.left, known, monitor_);
       obstructed(explain_motion(problem_, stop.pose, pick, remedies));
@@ -309,11 +320,19 @@ class PartSupply {
     const StageClock clock(plan_, "picks");
     Stop& stop = plan_.stops[index];
     const std::vector<PartRef> left = remaining(picked);
-    StopPicks found = stop_picks(problem_, database_, stop.pose, stop.trays, left, monitor_);
+    StopPicks found = stop_picks(problem_, database_, stop.pose, stop.trays, left, monitor_, held_drive_);
     std::vector<FailedPick> failed;
     const auto note = [&](const StopPicks& picks, const Eigen::Vector3d& pose) {
       for (const Pick& pick : picks.picks) failed.push_back({pose, pick.part.tray});
     };
+    const auto lacks_drive = [](const StopPicks& picks) {  // which other base poses near by would lack, too
+      return std::any_of(picks.picks.begin(), picks.picks.end(),
+                         [](const Pick& pick) { return pick.failed_at == kHeldDriveStage; });
+    };
+    if (found.outcome == Outcome::not_found && lacks_drive(found)) {
+      if (!unpicked_) unpicked_ = {found.picks, stop.pose, left};
+      return false;
+    }
     if (found.outcome == Outcome::not_found) {
       const StopPicks first = found;
       note(first, stop.pose);
@@ -321,7 +340,7 @@ class PartSupply {
            alternative_base_poses(plan_.grid, plan_.regions, stop, problem_.options.positioning_uncertainty,
                                   2 * plan_.grid.resolution, kAlternatives)) {
         if (routes.between(problem_.start, other.pose).outcome != Outcome::solved) continue;
-        found = stop_picks(problem_, database_, other.pose, other.trays, left, monitor_);
+        found = stop_picks(problem_, database_, other.pose, other.trays, left, monitor_, held_drive_);
         if (found.outcome == Outcome::not_found) note(found, other.pose);
         if (found.outcome == Outcome::solved && !still_robust(other)) found.outcome = Outcome::not_found;
         if (found.outcome == Outcome::solved) stop = other;
@@ -356,16 +375,24 @@ class PartSupply {
     return true;
   }
 
-  /// Trips to the goal each time that the bin is full, but for the last one, which ends the route.
+  /// The drive to the goal from the stop of a pick, with its part in the hand where there is no bin.
+  BasePath drive_to_goal(const Pick& pick, BaseRoutes& routes) {
+    const Eigen::Vector3d& pose = plan_.stops[pick.stop].pose;
+    return problem_.unload_region ? held_drives_.found(pose, pick.part) : routes.between(pose, problem_.goal);
+  }
+
+  /// Trips to the goal each time that the bin is full, or one part in the hand, but for the last one, which ends the
+  /// route.
   bool plan_unloadings(BaseRoutes& routes) {
     const StageClock clock(plan_, "route");
+    const int capacity = problem_.unload_region ? 1 : problem_.place_region.capacity;
     int inside = 0;
     for (int i = 0; i + 1 < static_cast<int>(plan_.picks.size()); ++i) {
-      if (++inside != problem_.place_region.capacity) continue;
+      if (++inside != capacity) continue;
       inside = 0;
       const int stop = plan_.picks[i].stop;
       const Eigen::Vector3d& pose = plan_.stops[stop].pose;
-      Unloading unloading{i, routes.between(pose, problem_.goal), {}};
+      Unloading unloading{i, drive_to_goal(plan_.picks[i], routes), {}};
       const bool returns = plan_.picks[i + 1].stop == stop;
       if (returns) unloading.back = routes.between(problem_.goal, pose);  // the same drive the other way
       if (monitor_.stopped()) return false;
@@ -392,9 +419,12 @@ class PartSupply {
       at = left_from(stop);
     }
     legs.emplace_back(at, problem_.goal);
-    routes.prepare(legs);
+    const bool holds = problem_.unload_region && !plan_.picks.empty();  // then the last drive is planned already
+    routes.prepare({legs.begin(), legs.end() - (holds ? 1 : 0)});
     for (std::size_t i = 0; i < legs.size(); ++i) {
-      BasePath path = routes.between(legs[i].first, legs[i].second);
+      const bool is_last = i + 1 == legs.size() && !plan_.picks.empty();
+      BasePath path =
+          is_last ? drive_to_goal(plan_.picks.back(), routes) : routes.between(legs[i].first, legs[i].second);
       if (monitor_.stopped()) return false;
       if (path.outcome != Outcome::solved)
         return obstructed_route(routes, static_cast<int>(i) - 1, i < plan_.stops.size() ? static_cast<int>(i) : -1);
@@ -406,6 +436,8 @@ class PartSupply {
   const PartSupplyProblem& problem_;
   const ReachDatabase& database_;
   const Monitor& monitor_;
+  HeldDrives held_drives_;
+  HeldDrive held_drive_;  ///< Empty where the robot has a bin.
   PartSupplyPlan plan_;
   std::optional<BasePoseEvaluator> evaluator_;  // with all parts in place; built once
   std::vector<TrayId> unreachable_;

@@ -99,7 +99,8 @@ std::vector<Remedy> remedies_to_try(const PickProblem& pick, const std::set<std:
     tries.back().pick.options.approach_distance = kShortMove;
   }
   if (!pick.places.empty()) {
-    tries.push_back({"move the bin (place_region)", pick});
+    tries.push_back(
+        {pick.T_world_root_at_place ? "move unload_region or the goal" : "move the bin (place_region)", pick});
     tries.back().pick.places.clear();
   }
   return tries;

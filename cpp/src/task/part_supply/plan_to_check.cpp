@@ -126,6 +126,10 @@ void set_task(const PartSupplyProblem& problem, PlanToCheck& check) {
   check.bin_size = problem.place_region.size;
   check.drop_height = problem.place_region.drop_height;
   check.capacity = problem.place_region.capacity;
+  if (problem.unload_region) {
+    const UnloadRegion& region = *problem.unload_region;
+    check.unload_region = {region.T_world_region, region.size, region.drop_height};
+  }
 }
 
 std::vector<std::string> tray_names(const PartSupplyProblem& problem, const std::vector<TrayId>& trays) {

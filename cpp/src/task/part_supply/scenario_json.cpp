@@ -159,12 +159,19 @@ std::string others_json(const std::map<std::string, double>& joints) {
   return json_object(members);
 }
 
-std::string place_json(const PlanToCheck& check) {
+/// The bin, or where parts are let go at the goal.
+JsonMember place_json(const PlanToCheck& check) {
+  if (check.unload_region) {
+    const verify::CheckedUnloadRegion& region = *check.unload_region;
+    return {"unload_region", json_object({{"pose", json_pose(region.T_world_region)},
+                                          {"size", json_numbers(region.size)},
+                                          {"drop_height", json_number(region.drop_height)}})};
+  }
   std::vector<JsonMember> members = {{"pose", json_pose(check.T_base_bin)},
                                      {"size", json_numbers(check.bin_size)},
                                      {"drop_height", json_number(check.drop_height)}};
   if (check.capacity > 0) members.emplace_back("capacity", std::to_string(check.capacity));
-  return json_object(members);
+  return {"place_region", json_object(members)};
 }
 
 std::string obstacle_json(const verify::CheckedBody& body) {
@@ -218,7 +225,7 @@ std::string scenario_json(const PartSupplyProblem& problem, const ReachDatabase&
       {"start", json_numbers(check.start)},
       {"goal", json_numbers(check.goal)},
       {"positioning_uncertainty", json_number(check.positioning_uncertainty)},
-      {"place_region", place_json(check)},
+      place_json(check),
       {"floor", std::isfinite(check.floor) ? json_number(check.floor) : "null"},
       {"obstacles", json_array_of(check.obstacles, obstacle_json)},
       {"trays", trays_json(problem, check)},

@@ -1,4 +1,4 @@
-// plan_pick() of a part-supply problem: the part as an object of the scene, the bin as its place.
+// plan_pick() of a part-supply problem: the part as an object of the scene, bin or unload region as its place.
 #include "task/pick/part_pick.hpp"
 
 #include "mmgrasp/core/error.hpp"
@@ -31,16 +31,27 @@ PickProblem pick_of(const PartSupplyProblem& problem, const Eigen::Vector3d& bas
   const PartSupplyOptions& options = problem.options;
   const unsigned seed =
       options.seed * 1000003u + static_cast<unsigned>(ref.tray) * 1009u + static_cast<unsigned>(ref.part);
-  return {
+  PickProblem pick{
       problem.arm.at(T_world_root),
       problem.gripper,
       world_with_parts(problem, remaining),
       part.name,
       part.grasps,
       problem.home,
-      places_over_bin(problem.place_region, T_world_root, part),
+      places_over(problem.unload_region.value_or(top_of_bin(problem.place_region, T_world_root)), part),
       {options.approach_distance, options.lift_height, options.motion_time_limit, ik_seeds_of_a_grasp(problem), seed},
       part.mass};
+  if (problem.unload_region) pick.T_world_root_at_place = pose_from_planar(problem.goal);
+  return pick;
+}
+
+Pick pick_part(const PartSupplyProblem& problem, const ReachDatabase& database, const Eigen::Vector3d& base_pose,
+               PartRef part, const std::vector<PartRef>& remaining, const Monitor& monitor, const HeldDrive& drive) {
+  std::function<bool(int)> carries;
+  if (drive) carries = [&](int grasp) { return drive(base_pose, part, grasp, remaining); };
+  Pick pick = search_pick(pick_of(problem, base_pose, part, remaining), database, monitor, true, carries);
+  pick.part = part;
+  return pick;
 }
 
 }  // namespace detail
@@ -52,9 +63,7 @@ Pick plan_pick(const PartSupplyProblem& problem, const ReachDatabase& database, 
     const std::string name = "remaining[" + std::to_string(i) + "]";
     check_part(problem, remaining[i], name + ".tray", name + ".part");
   }
-  Pick pick = detail::search_pick(detail::pick_of(problem, base_pose, part, remaining), database, monitor);
-  pick.part = part;
-  return pick;
+  return detail::pick_part(problem, database, base_pose, part, remaining, monitor);
 }
 
 }  // namespace mmgrasp

@@ -16,6 +16,8 @@ const char* to_string(MotionKind kind) {
       return "approach";
     case MotionKind::lift:
       return "lift";
+    case MotionKind::stow:
+      return "stow";
     case MotionKind::transfer:
       return "transfer";
     case MotionKind::retreat:
@@ -55,6 +57,12 @@ void PickProblem::check() const {
   require_not_negative(mass, "mass", "kg");
   require(mass <= gripper.payload, "mass", mass, "must be from 0 to gripper.payload [kg]");
   require(!gripper.suction || mass > 0, "mass", mass, "must be positive: suction cups hold by force [kg]");
+  if (T_world_root_at_place) {
+    checked_pose(T_world_root_at_place->matrix(), "T_world_root_at_place");
+    require(!places.empty(), "places", 0.0, "must hold a pose with a T_world_root_at_place");
+    require(!gripper.suction, "T_world_root_at_place", "with suction cups",
+            "must be left out: what the base's acceleration pulls at them is not known");
+  }
   for (std::size_t i = 0; i < places.size(); ++i) checked_pose(places[i].matrix(), "places[" + std::to_string(i) + "]");
 }
 

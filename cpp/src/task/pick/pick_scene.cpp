@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "task/problem/scene.hpp"
 
@@ -10,7 +9,7 @@ namespace mmgrasp::detail {
 namespace {
 
 constexpr double kOpeningStep = 0.004;  // [m] between two checks of moving fingers
-constexpr double kJustTouching = 1e-6;  // [m] A part that slides along a wall without a gap is no pick.
+constexpr double kRaised = 2e-6;        // [m] beyond what keeps a held object from what it rests on.
 
 }  // namespace
 
@@ -45,18 +44,12 @@ CollisionChecker& PickScene::after(double opening) {
 }
 
 CollisionChecker PickScene::holding(double opening, const Pose& T_hand_object) const {
-  World world = problem_.world;
-  const std::vector<std::string>& fingers = problem_.gripper.finger_links;
-  world.attach(problem_.object, problem_.gripper.tool_link, T_hand_object,
-               std::set<std::string>(fingers.begin(), fingers.end()));
-  Padding padding = world.padding();
-  padding.attached = std::max(padding.attached, kJustTouching);
-  world.set_padding(std::move(padding));
-  return CollisionChecker(arm(opening), world);
+  return CollisionChecker(arm(opening),
+                          world_holding(problem_.world, problem_.gripper, problem_.object, T_hand_object));
 }
 
 CollisionChecker PickScene::lifting(double opening, const Pose& T_world_hand, const Pose& T_world_object) const {
-  return holding(opening, T_world_hand.inverse() * Eigen::Translation3d(0, 0, 2 * kJustTouching) * T_world_object);
+  return holding(opening, T_world_hand.inverse() * Eigen::Translation3d(0, 0, kRaised) * T_world_object);
 }
 
 bool PickScene::fingers_free(const CollisionChecker& checker, const Eigen::VectorXd& q, double from, double to) const {

@@ -13,7 +13,7 @@ namespace {
 constexpr int kYaws = 12;
 constexpr int kSeeds = 3;
 constexpr double kPlaceShare =
-    0.4;  // Places lie within this part of the bin's size from its middle: clear of its edge.
+    0.4;  // Places lie within this part of the region's size from its middle: clear of its edge.
 
 double lowest(const Part& part, const Pose& T) {
   double z = kInfinity;
@@ -24,18 +24,23 @@ double lowest(const Part& part, const Pose& T) {
 
 }  // namespace
 
-std::vector<Pose> places_over_bin(const PlaceRegion& bin, const Pose& T_world_root, const Part& part) {
-  const Pose T_world_bin = T_world_root * bin.T_base_bin;
+UnloadRegion top_of_bin(const PlaceRegion& bin, const Pose& T_world_root) {
+  return {T_world_root * bin.T_base_bin, bin.size, bin.drop_height};
+}
+
+std::vector<Pose> places_over(const UnloadRegion& region, const Part& part) {
+  const Pose& T_world_region = region.T_world_region;
   std::vector<Pose> places;
   for (const auto& [x, y] : {std::pair{0, 0}, {0, 1}, {0, -1}, {1, 0}, {-1, 0}, {1, 1}, {1, -1}, {-1, 1}, {-1, -1}}) {
     for (int k = 0; k < kYaws; ++k) {
       Pose T_world_part = Pose::Identity();
       T_world_part.linear() = Eigen::AngleAxisd(kTwoPi * k / kYaws, Eigen::Vector3d::UnitZ()).toRotationMatrix() *
                               part.T_world_part.linear();
-      Pose T_bin_part = T_world_bin.inverse() * T_world_part;
-      T_bin_part.translation() = Eigen::Vector3d(kPlaceShare * x * bin.size.x(), kPlaceShare * y * bin.size.y(), 0);
-      T_bin_part.translation().z() = bin.drop_height - lowest(part, T_bin_part);
-      places.push_back(T_world_bin * T_bin_part);
+      Pose T_region_part = T_world_region.inverse() * T_world_part;
+      T_region_part.translation() =
+          Eigen::Vector3d(kPlaceShare * x * region.size.x(), kPlaceShare * y * region.size.y(), 0);
+      T_region_part.translation().z() = region.drop_height - lowest(part, T_region_part);
+      places.push_back(T_world_region * T_region_part);
     }
   }
   return places;

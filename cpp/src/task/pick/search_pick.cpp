@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "mmgrasp/core/detail/no_time_limit.hpp"
 #include "mmgrasp/grasp/detail/joined_surface.hpp"
@@ -23,6 +24,9 @@ constexpr double kSameConfiguration = 1e-2;  // Configurations nearer than this 
 constexpr int kConfigurations = 6;           // Tried for one grasp.
 constexpr int kMotionTries = 12;             // Grasp configurations that may reach the costly stage.
 constexpr std::size_t kReleases = 6;         // Goals of a transfer.
+constexpr std::size_t kDriveTries = 6;       // Grasps with which the base may fail to drive to the place.
+constexpr double kAlikeTurn = 0.35;          // An object that is held but so little otherwise [rad]
+constexpr double kAlikeShift = 0.03;         // and [m] passes where that one does.
 constexpr double kLineDeviation = 2e-4;      // Blending of straight tool motions [rad]: the tool stays on its line.
 constexpr double kEdgeStep = 0.02;
 // States per second of motion_time_limit: so few that this budget ends a search before the time limit does.
@@ -30,10 +34,10 @@ constexpr double kStatesPerSecond = 2000;
 constexpr double kMaxStates = 1e8;
 constexpr double kTimedStep = 0.01;
 
-/// Stages at which candidates fall, in the order in which they are planned.
-enum Stage { kGrasp, kApproach, kClose, kLift, kRelease, kTransit, kTransfer, kRetreat, kStages };
-constexpr std::array<const char*, kStages> kStageNames = {"grasp",   "approach", "close",    "lift",
-                                                          "release", "transit",  "transfer", "retreat"};
+/// Stages at which candidates fall; the first eight in the order in which they are planned.
+enum Stage { kGrasp, kApproach, kClose, kLift, kRelease, kTransit, kTransfer, kRetreat, kStow, kHeldDrive, kStages };
+constexpr std::array<const char*, kStages> kStageNames = {"grasp",   "approach", "close",   "lift", "release",
+                                                          "transit", "transfer", "retreat", "stow", kHeldDriveStage};
 
 JointPath reversed(const JointPath& path) {
   JointPath back = path;
@@ -43,19 +47,47 @@ JointPath reversed(const JointPath& path) {
 
 /// The paths of one pick before timing.
 struct Paths {
-  JointPath transit, approach, lift, transfer, retreat;
+  JointPath transit, approach, lift, stow, transfer, retreat;
 };
+
+/// What must stay free along them: the object in place, just raised, held where it was picked, held where it is
+/// released, gone from there.
+struct Checkers {
+  CollisionChecker &before, &lifting, &holding, &releasing, &after;
+};
+
+/// A path with what its motion must be.
+struct PlannedMotion {
+  MotionKind kind;
+  Stage stage;
+  const JointPath& path;
+  CollisionChecker& checker;
+  bool holds = false, straight = false;
+};
+
+/// The problem as it is where the object is released from.
+PickProblem at_place(const PickProblem& problem) {
+  PickProblem there = problem;
+  there.arm = problem.arm.at(*problem.T_world_root_at_place);
+  return there;
+}
 
 /// Tries grasps and arm configurations, the best first, until one has all motions of the pick.
 class PickPlanner {
  public:
-  PickPlanner(const PickProblem& problem, const ReachDatabase& database, const Monitor& monitor)
+  PickPlanner(const PickProblem& problem, const ReachDatabase& database, const Monitor& monitor,
+              const std::function<bool(int)>& carries)
       : problem_(problem),
         database_(database),
+        carries_(carries),
         scene_(problem),
         T_world_object_(problem.world.objects().at(problem.object).T_world_object),
         monitor_(monitor),
         seed_(problem.options.seed) {
+    if (problem.T_world_root_at_place && !problem.places.empty()) {
+      problem_there_.emplace(at_place(problem));
+      scene_there_.emplace(*problem_there_);
+    }
     if (problem.gripper.suction)
       centre_of_mass_ = joined_surface(problem.world.objects().at(problem.object).shapes).centre_of_mass;
   }
@@ -63,7 +95,7 @@ class PickPlanner {
   Pick run(int rounds) {
     for (int round = 0; round < rounds; ++round) {
       for (int g = 0; g < static_cast<int>(problem_.grasps.size()); ++g) {
-        if (motion_tries_ < kMotionTries && try_grasp(g, round)) return pick_;
+        if (refused_.size() < kDriveTries && motion_tries_ < kMotionTries && try_grasp(g, round)) return pick_;
         if (monitor_.stopped()) {
           pick_.outcome = Outcome::stopped;
           return pick_;
@@ -72,6 +104,7 @@ class PickPlanner {
     }
     const auto worst = std::max_element(fallen_.begin(), fallen_.end());
     pick_.failed_at = *worst > 0 ? kStageNames[worst - fallen_.begin()] : "grasp";
+    if (!refused_.empty()) pick_.failed_at = kHeldDriveStage;  // all the rest would do
     return pick_;
   }
 
@@ -121,14 +154,32 @@ class PickPlanner {
     return found;
   }
 
+  /// Whether the base can drive to the place with the object in the hand.
+  bool can_carry(int grasp) {
+    if (!carries_ || carries_(grasp)) return true;
+    refused_.push_back(grasp);
+    return false;
+  }
+
+  /// A grasp that holds the object as one did with which no drive was found.
+  bool held_like_a_refused_one(int grasp) const {
+    const Pose& T = problem_.grasps[grasp].T_object_hand;
+    return std::any_of(refused_.begin(), refused_.end(), [&](int other) {
+      const Pose& T_other = problem_.grasps[other].T_object_hand;
+      return rotation_distance(T, T_other) < kAlikeTurn &&
+             (T.translation() - T_other.translation()).norm() < kAlikeShift;
+    });
+  }
+
   bool try_grasp(int grasp, int round) {
+    if (held_like_a_refused_one(grasp)) return false;
     const double width = problem_.grasps[grasp].opening;
     const double opening = problem_.gripper.pregrasp_opening(width);
     CollisionChecker& before = scene_.before(opening);
     const std::vector<Eigen::VectorXd> configurations = grasp_configurations(grasp, round, before);
     if (configurations.empty()) return fell(kGrasp);
     for (const Eigen::VectorXd& q : configurations) {
-      if (monitor_.stopped() || motion_tries_ >= kMotionTries) return false;
+      if (monitor_.stopped() || motion_tries_ >= kMotionTries || held_like_a_refused_one(grasp)) return false;
       if (try_configuration(grasp, q, before, width, opening)) return true;
     }
     return false;
@@ -153,20 +204,31 @@ class PickPlanner {
 
     const Pose T_hand_object = T_grasp.inverse() * T_world_object_;
     CollisionChecker holding = scene_.holding(width, T_hand_object);
-    CollisionChecker& after = scene_.after(opening);
+    PickScene& there = scene_there_ ? *scene_there_ : scene_;
+    std::optional<CollisionChecker> holding_there;
+    if (scene_there_) holding_there.emplace(there.holding(width, T_hand_object));
+    const Checkers checkers{before, lifting, holding, holding_there ? *holding_there : holding, there.after(opening)};
+    if (scene_there_ && !(holding.is_free(problem_.home) && holding_there->is_free(problem_.home))) return fell(kStow);
     std::vector<Eigen::VectorXd> releases;
     if (!problem_.places.empty()) {
       for (const Eigen::VectorXd& some :
-           release_configurations(database_, holding, problem_.places, T_hand_object, paths.lift.waypoints.back(),
+           release_configurations(database_, checkers.releasing, problem_.places, T_hand_object, before_transfer(paths),
                                   kReleases, pick_.rejections)) {
-        if (scene_.fingers_free(after, some, width, opening)) releases.push_back(some);
+        if (there.fingers_free(checkers.after, some, width, opening)) releases.push_back(some);
       }
       if (releases.empty()) return fell(kRelease);
     }
     if (!scene_.fingers_free(before, problem_.home, 0, opening)) return fell(kTransit);
+    if (scene_there_ && !there.fingers_free(checkers.after, problem_.home, opening, 0)) return fell(kRetreat);
     ++motion_tries_;
-    if (!plan_motions(before, holding, after, releases, paths)) return false;
-    return finish(grasp, width, opening, {&before, &before, &lifting, &holding, &after}, paths);
+    if (!plan_motions(checkers, releases, paths)) return false;
+    if (!can_carry(grasp)) return fell(kHeldDrive);
+    return finish(grasp, width, opening, checkers, paths);
+  }
+
+  /// Where the arm stands as it begins to bring the object to its place.
+  const Eigen::VectorXd& before_transfer(const Paths& paths) const {
+    return scene_there_ ? problem_.home : paths.lift.waypoints.back();
   }
 
   StraightLineOptions line_options() const {
@@ -189,44 +251,48 @@ class PickPlanner {
     return true;
   }
 
-  bool plan_motions(CollisionChecker& before, CollisionChecker& holding, CollisionChecker& after,
-                    const std::vector<Eigen::VectorXd>& releases, Paths& paths) {
-    if (!motion(before, problem_.home, {paths.approach.waypoints.front()}, kTransit, paths.transit)) return false;
+  bool plan_motions(const Checkers& checkers, const std::vector<Eigen::VectorXd>& releases, Paths& paths) {
+    const Eigen::VectorXd& home = problem_.home;
+    if (!motion(checkers.before, home, {paths.approach.waypoints.front()}, kTransit, paths.transit)) return false;
     if (releases.empty()) return true;
-    return motion(holding, paths.lift.waypoints.back(), releases, kTransfer, paths.transfer) &&
-           motion(after, paths.transfer.waypoints.back(), {problem_.home}, kRetreat, paths.retreat);
+    if (scene_there_ && !motion(checkers.holding, paths.lift.waypoints.back(), {home}, kStow, paths.stow)) return false;
+    return motion(checkers.releasing, before_transfer(paths), releases, kTransfer, paths.transfer) &&
+           motion(checkers.after, paths.transfer.waypoints.back(), {home}, kRetreat, paths.retreat);
   }
 
-  /// Checkers of transit, approach, lift, transfer, retreat.
-  using MotionCheckers = std::array<CollisionChecker*, 5>;
+  std::vector<PlannedMotion> motions_of(const Checkers& checkers, const Paths& paths) const {
+    std::vector<PlannedMotion> motions{{MotionKind::transit, kTransit, paths.transit, checkers.before, false, false},
+                                       {MotionKind::approach, kApproach, paths.approach, checkers.before, false, true},
+                                       {MotionKind::lift, kLift, paths.lift, checkers.lifting, true, true}};
+    if (problem_.places.empty()) return motions;
+    if (scene_there_) motions.push_back({MotionKind::stow, kStow, paths.stow, checkers.holding, true, false});
+    motions.push_back({MotionKind::transfer, kTransfer, paths.transfer, checkers.releasing, true, false});
+    motions.push_back({MotionKind::retreat, kRetreat, paths.retreat, checkers.after, false, false});
+    return motions;
+  }
 
-  bool finish(int grasp, double width, double opening, const MotionCheckers& checkers, const Paths& paths) {
+  bool finish(int grasp, double width, double opening, const Checkers& checkers, const Paths& paths) {
     TimingOptions line;
     line.max_deviation = kLineDeviation;
     bool held = true;
-    const auto add = [&](MotionKind kind, bool holds, const JointPath& path, const TimingOptions& options) {
-      CollisionChecker& checker = *checkers[pick_.motions.size()];
-      JointTrajectory trajectory = time_parameterize_free(checker, path, options, kTimedStep, {monitor_.stop, {}});
-      if (holds && problem_.gripper.suction) held = slow_to_hold(checker.group(), load_at(grasp), trajectory) && held;
-      pick_.motions.push_back({kind, holds ? width : opening, holds, std::move(trajectory)});
-    };
-    add(MotionKind::transit, false, paths.transit, {});
-    add(MotionKind::approach, false, paths.approach, line);
-    add(MotionKind::lift, true, paths.lift, line);
-    if (!problem_.places.empty()) {
-      add(MotionKind::transfer, true, paths.transfer, {});
-      add(MotionKind::retreat, false, paths.retreat, {});
+    const std::vector<PlannedMotion> planned = motions_of(checkers, paths);
+    for (const PlannedMotion& motion : planned) {
+      const TimingOptions& options = motion.straight ? line : TimingOptions();
+      JointTrajectory trajectory =
+          time_parameterize_free(motion.checker, motion.path, options, kTimedStep, {monitor_.stop, {}});
+      if (motion.holds && problem_.gripper.suction)
+        held = slow_to_hold(motion.checker.group(), load_at(grasp), trajectory) && held;
+      pick_.motions.push_back({motion.kind, motion.holds ? width : opening, motion.holds, std::move(trajectory)});
     }
     if (!held) {
       pick_.motions.clear();
       return fell(kLift);
     }
     join_motions(problem_.arm.wraps(), problem_.home, pick_.motions);
-    const std::array<Stage, 5> stages = {kTransit, kApproach, kLift, kTransfer, kRetreat};
-    for (std::size_t i = 0; i < pick_.motions.size(); ++i) {
-      if (trajectory_free(*checkers[i], pick_.motions[i].trajectory)) continue;
+    for (std::size_t i = 0; i < planned.size(); ++i) {
+      if (trajectory_free(planned[i].checker, pick_.motions[i].trajectory)) continue;
       pick_.motions.clear();
-      return fell(stages[i]);
+      return fell(planned[i].stage);
     }
     pick_.outcome = Outcome::solved;
     pick_.grasp = grasp;
@@ -257,7 +323,11 @@ class PickPlanner {
 
   const PickProblem& problem_;
   const ReachDatabase& database_;
+  const std::function<bool(int)>& carries_;
   PickScene scene_;
+  std::optional<PickProblem> problem_there_;  ///< Set where the object is released from another base pose.
+  std::optional<PickScene> scene_there_;
+  std::vector<int> refused_;  ///< Grasps with which no drive to the place was found.
   Pose T_world_object_;
   Eigen::Vector3d centre_of_mass_ = Eigen::Vector3d::Zero();  ///< The object's, for cups.
   const Monitor& monitor_;
@@ -272,10 +342,11 @@ class PickPlanner {
 
 }  // namespace
 
-Pick search_pick(const PickProblem& problem, const ReachDatabase& database, const Monitor& monitor, bool thorough) {
+Pick search_pick(const PickProblem& problem, const ReachDatabase& database, const Monitor& monitor, bool thorough,
+                 const std::function<bool(int)>& carries) {
   Monitor quiet;
   quiet.stop = monitor.stop;
-  return PickPlanner(problem, database, quiet).run(thorough ? 2 : 1);
+  return PickPlanner(problem, database, quiet, carries).run(thorough ? 2 : 1);
 }
 
 }  // namespace mmgrasp::detail

@@ -44,7 +44,8 @@ std::vector<PartRef> without(const std::vector<PartRef>& parts, const std::set<P
 }  // namespace
 
 StopPicks stop_picks(const PartSupplyProblem& problem, const ReachDatabase& database, const Eigen::Vector3d& base_pose,
-                     const std::vector<TrayId>& trays, const std::vector<PartRef>& remaining, const Monitor& monitor) {
+                     const std::vector<TrayId>& trays, const std::vector<PartRef>& remaining, const Monitor& monitor,
+                     const HeldDrive& drive) {
   StopPicks result;
   std::vector<PartRef> order = first_order(problem, base_pose, trays, remaining);
   std::map<PartRef, std::pair<std::set<PartRef>, Pick>> known;  // with the parts that were gone when it was planned
@@ -61,7 +62,7 @@ StopPicks stop_picks(const PartSupplyProblem& problem, const ReachDatabase& data
         open.size(), problem.options.threads,
         [&](std::size_t item, int) {
           const auto& [id, before] = open[item];
-          planned[item] = plan_pick(problem, database, base_pose, id, without(remaining, before), monitor);
+          planned[item] = pick_part(problem, database, base_pose, id, without(remaining, before), monitor, drive);
         },
         monitor, "picks");
     if (!done || monitor.stopped()) {

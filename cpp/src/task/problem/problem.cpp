@@ -67,6 +67,24 @@ void check_trays(const PartSupplyProblem& problem) {
   }
 }
 
+void check_place(const PartSupplyProblem& problem) {
+  checked_pose(problem.place_region.T_base_bin.matrix(), "place_region.pose");
+  for (double length : problem.place_region.size) require_length(length, "place_region.size");
+  require_not_negative(problem.place_region.drop_height, "place_region.drop_height");
+  require_within(problem.place_region.capacity, 0, 1e6, "place_region.capacity", "parts (0: all)");
+  if (!problem.unload_region) return;
+  const UnloadRegion& region = *problem.unload_region;
+  checked_pose(region.T_world_region.matrix(), "unload_region.pose");
+  require(region.T_world_region.linear()(2, 2) > 1 - 1e-9, "unload_region.pose", region.T_world_region.linear()(2, 2),
+          "must be level: so much of its z axis points up");
+  for (double length : region.size) require_length(length, "unload_region.size");
+  require_not_negative(region.drop_height, "unload_region.drop_height");
+  require(problem.place_region.capacity == 0, "place_region.capacity", problem.place_region.capacity,
+          "must be 0 with an unload_region: the hand carries one part at a time");
+  require(!problem.gripper.suction, "unload_region", "with suction cups",
+          "must be left out: what the base's acceleration pulls at them is not known");
+}
+
 }  // namespace
 
 int ik_seeds_of_a_grasp(int asked, const std::vector<int>& grasps_of_parts) {
@@ -118,10 +136,7 @@ void PartSupplyProblem::check() const {
   for (const std::string& link : gripper.finger_links) robot.link_index(link);
   require_numbers(start, "start", "m, rad");
   require_numbers(goal, "goal", "m, rad");
-  checked_pose(place_region.T_base_bin.matrix(), "place_region.pose");
-  for (double length : place_region.size) require_length(length, "place_region.size");
-  require_not_negative(place_region.drop_height, "place_region.drop_height");
-  require_within(place_region.capacity, 0, 1e6, "place_region.capacity", "parts (0: all)");
+  check_place(*this);
   require(world.attached().empty(), "world", "an attached object", "must hold nothing attached at the start");
   check_arrival_covariance(arrival_covariance);
   require(drive_clearance == 0 || (drive_clearance >= 1e-3 && drive_clearance <= 10), "drive_clearance",

@@ -1,8 +1,15 @@
 #include "task/problem/scene.hpp"
 
 #include <algorithm>
+#include <set>
+#include <utility>
 
 namespace mmgrasp::detail {
+namespace {
+
+constexpr double kJustTouching = 1e-6;  // [m] A part that slides along a wall without a gap is no pick.
+
+}  // namespace
 
 std::vector<TrayId> all_trays(const PartSupplyProblem& problem) {
   std::vector<TrayId> trays;
@@ -51,6 +58,15 @@ World world_with_parts(const PartSupplyProblem& problem, const std::vector<PartR
     object.T_world_object = part.T_world_part;
     world.add(part.name, std::move(object));
   }
+  return world;
+}
+
+World world_holding(World world, const Hand& gripper, const std::string& object, const Pose& T_hand_object) {
+  const std::vector<std::string>& fingers = gripper.finger_links;
+  world.attach(object, gripper.tool_link, T_hand_object, std::set<std::string>(fingers.begin(), fingers.end()));
+  Padding padding = world.padding();
+  padding.attached = std::max(padding.attached, kJustTouching);
+  world.set_padding(std::move(padding));
   return world;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "mmgrasp/core/export.hpp"
@@ -27,6 +28,9 @@ MMGRASP_EXPORT int ik_seeds_of_a_grasp(const PartSupplyProblem& problem);
 
 /// The scene with these parts in place.
 World world_with_parts(const PartSupplyProblem& problem, const std::vector<PartRef>& parts);
+
+/// The same with an object of it held by the tool, which only the finger links may touch.
+World world_holding(World world, const Hand& gripper, const std::string& object, const Pose& T_hand_object);
 
 /// The arm with the gripper's fingers opened so far [m]; everything else as in the arm's reference.
 JointGroup arm_with_opening(const JointGroup& arm, const Hand& gripper, double opening);

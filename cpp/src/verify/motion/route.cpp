@@ -255,7 +255,7 @@ class RouteCheck {
   const PlanToCheck& plan_;
   Judge& judge_;
   Faults& faults_;
-  double opening_ = 0;  ///< Of the fingers on the drive [m]: that of the grasp while they hold a part.
+  double opening_ = 0;  ///< The fingers' on the drive [m]: the grasp's while they hold a part.
 };
 
 /// The configuration in which the robot drives, where it stands first.

@@ -10,6 +10,7 @@
 #include "mmgrasp/task/plan_file.hpp"
 #include "mmgrasp/task/problem.hpp"
 #include "option_bounds.hpp"
+#include "place_regions.hpp"
 #include "plan_arguments.hpp"
 
 namespace mmgrasp::python {
@@ -145,25 +146,7 @@ void bind_problem(py::module_& m) {
                     "Headings of the base that are tried [rad]; empty: the one that faces the tray.")
       .def("__repr__",
            [](const Tray& t) { return "Tray('" + t.name + "', " + std::to_string(t.parts.size()) + " parts)"; });
-  py::class_<PlaceRegion>(m, "PlaceRegion", "Where picked parts go: a bin fixed to the robot.")
-      .def(py::init([](const ArrayLike& T_base_bin, const ArrayLike& size, double drop_height, int capacity) {
-             return PlaceRegion{pose_argument(T_base_bin, "T_base_bin"), vector2_argument(size, "size"),
-                                finite_argument(drop_height, "drop_height"), capacity};
-           }),
-           py::arg("T_base_bin"), py::arg("size"), py::arg("drop_height") = PlaceRegion{}.drop_height,
-           py::arg("capacity") = PlaceRegion{}.capacity,
-           "`T_base_bin` (4, 4): middle of the bin's top plane in the robot's root frame, z up; `size` (2,): inner x "
-           "and y\n[m], > 0; `drop_height`: how far above the top plane a part is released [m], >= 0; "
-           "`capacity`: so many parts fill the bin, 0: it takes all.")
-      .def_property_readonly(
-          "T_base_bin", [](const PlaceRegion& c) { return to_array(c.T_base_bin); },
-          "Middle of the bin's top plane in the robot's root frame (4, 4), z up.")
-      .def_readonly("size", &PlaceRegion::size, "Inner x and y (2,) [m].")
-      .def_readonly("drop_height", &PlaceRegion::drop_height,
-                    "A part is released with its lowest point so far above the bin's top plane [m].")
-      .def_readonly(
-          "capacity", &PlaceRegion::capacity,
-          "So many parts fill the bin; then the robot drives to the goal, where it is emptied. 0: it takes all.");
+  bind_place_regions(m);
   py::class_<PartSupplyProblem>(m, "PartSupplyProblem",
                                 "Everything the part-supply planner needs: the robot and its hand, the room, the trays "
                                 "with their parts, and where parts\n"
@@ -172,36 +155,44 @@ void bind_problem(py::module_& m) {
                                 "    problem = mg.load_scenario(\"storeroom.yaml\").problem()\n"
                                 "    database = mg.ReachDatabase.build(problem.arm)\n"
                                 "    plan = mg.base.plan_part_supply(problem, database)")
-      .def(py::init([](const Robot& robot, const JointGroup& arm, const Hand& gripper, const World& world,
-                       std::vector<Tray> trays, const ArrayLike& home, const ArrayLike& start, const ArrayLike& goal,
-                       const PlaceRegion& place_region, const OptionalArray& arrival_covariance, double drive_clearance,
-                       const py::kwargs& options) {
-             PartSupplyProblem problem{robot,
-                                       arm,
-                                       gripper,
-                                       world,
-                                       std::move(trays),
-                                       vector_argument(home, "home", arm.size()),
-                                       vector3_argument(start, "start"),
-                                       vector3_argument(goal, "goal"),
-                                       place_region,
-                                       supply_options().read(options, "PartSupplyProblem")};
-             if (!arrival_covariance.is_none())
-               problem.arrival_covariance = covariance_argument(py::reinterpret_borrow<ArrayLike>(arrival_covariance));
-             problem.drive_clearance = drive_clearance;
-             problem.check();
-             return problem;
-           }),
-           py::arg("robot"), py::arg("arm"), py::arg("gripper"), py::arg("world"), py::arg("trays"), py::arg("home"),
-           py::arg("start"), py::arg("goal"), py::arg("place_region"), py::kw_only(),
-           py::arg("arrival_covariance") = py::none(), py::arg("drive_clearance") = 0.0,
-           ("`world` is without the parts; `home` (n,) is the arm's configuration while driving; `start` and `goal` "
-            "(3,) are base\nposes x, y, theta [m, m, rad]. `arrival_covariance` (3, 3) of x, y [m^2] and theta [rad^2] "
-            "in the world's axes says how far\nfrom a stop the base comes to stand; stops then are where most arrivals "
-            "serve all their parts. Drives keep\n`drive_clearance` [m] to all but the ground, but within 1 m of their "
-            "ends. Raises InvalidInput naming the field that breaks its rule." +
-            option_help(supply_fields()))
-               .c_str())
+      .def(
+          py::init([](const Robot& robot, const JointGroup& arm, const Hand& gripper, const World& world,
+                      std::vector<Tray> trays, const ArrayLike& home, const ArrayLike& start, const ArrayLike& goal,
+                      const std::optional<PlaceRegion>& place_region, const OptionalArray& arrival_covariance,
+                      double drive_clearance, const std::optional<UnloadRegion>& unload_region,
+                      const py::kwargs& options) {
+            if (place_region.has_value() == unload_region.has_value())
+              throw InvalidInput(place_region ? "unload_region: parts go into the bin, place_region: give one of both"
+                                              : "place_region = None: a robot without a bin needs an unload_region");
+            PartSupplyProblem problem{robot,
+                                      arm,
+                                      gripper,
+                                      world,
+                                      std::move(trays),
+                                      vector_argument(home, "home", arm.size()),
+                                      vector3_argument(start, "start"),
+                                      vector3_argument(goal, "goal"),
+                                      place_region.value_or(PlaceRegion()),
+                                      supply_options().read(options, "PartSupplyProblem")};
+            if (!arrival_covariance.is_none())
+              problem.arrival_covariance = covariance_argument(py::reinterpret_borrow<ArrayLike>(arrival_covariance));
+            problem.drive_clearance = drive_clearance;
+            problem.unload_region = unload_region;
+            problem.check();
+            return problem;
+          }),
+          py::arg("robot"), py::arg("arm"), py::arg("gripper"), py::arg("world"), py::arg("trays"), py::arg("home"),
+          py::arg("start"), py::arg("goal"), py::arg("place_region"), py::kw_only(),
+          py::arg("arrival_covariance") = py::none(), py::arg("drive_clearance") = 0.0,
+          py::arg("unload_region") = py::none(),
+          ("`world` is without the parts; `home` (n,) is the arm's configuration while driving; `start` and `goal` "
+           "(3,) are base\nposes x, y, theta [m, m, rad]. `arrival_covariance` (3, 3) of x, y [m^2] and theta [rad^2] "
+           "in the world's axes says how far\nfrom a stop the base comes to stand; stops then are where most arrivals "
+           "serve all their parts. Drives keep\n`drive_clearance` [m] to all but the ground, but within 1 m of their "
+           "ends. A robot without a bin\n(`place_region` None) brings each part to the goal in its hand and lets it go "
+           "over the `unload_region` there. Raises InvalidInput naming the field that breaks its rule." +
+           option_help(supply_fields()))
+              .c_str())
       .def_readonly("robot", &PartSupplyProblem::robot, "The robot.")
       .def_readonly("arm", &PartSupplyProblem::arm, "The arm, without base joints.")
       .def_readonly("gripper", &PartSupplyProblem::gripper, "The gripper of the arm.")
@@ -210,7 +201,15 @@ void bind_problem(py::module_& m) {
       .def_readonly("home", &PartSupplyProblem::home, "Arm configuration while driving (n,), fingers closed.")
       .def_readonly("start", &PartSupplyProblem::start, "Base pose at the beginning (3,): x, y, theta [m, m, rad].")
       .def_readonly("goal", &PartSupplyProblem::goal, "Base pose at the end (3,): x, y, theta [m, m, rad].")
-      .def_readonly("place_region", &PartSupplyProblem::place_region, "Where picked parts go.")
+      .def_property_readonly(
+          "place_region",
+          [](const PartSupplyProblem& p) -> std::optional<PlaceRegion> {
+            if (p.unload_region) return std::nullopt;
+            return p.place_region;
+          },
+          "The bin on the robot, where picked parts go; None: there is none.")
+      .def_readonly("unload_region", &PartSupplyProblem::unload_region,
+                    "Where parts are let go at the goal that the hand brings there; None: they go into the bin.")
       .def_readonly("arrival_covariance", &PartSupplyProblem::arrival_covariance,
                     "Covariance of x, y [m^2] and theta [rad^2] about a stop (3, 3); zeros: not asked for.")
       .def_readonly("drive_clearance", &PartSupplyProblem::drive_clearance,
@@ -243,7 +242,7 @@ void bind_picks(py::module_& m) {
   py::class_<PickMotion>(m, "PickMotion", "One timed arm motion at a stop.")
       .def_property_readonly(
           "kind", [](const PickMotion& p) { return to_string(p.kind); },
-          "transit, approach, lift, transfer or retreat.")
+          "transit, approach, lift, transfer or retreat; stow where the hand carries the part to the goal.")
       .def_readonly("opening", &PickMotion::opening, "Opening of the fingers during the motion [m].")
       .def_readonly("attached", &PickMotion::attached, "The part is attached during the motion.")
       .def_readonly("trajectory", &PickMotion::trajectory, "The arm on its clock, from 0.")
@@ -259,7 +258,8 @@ void bind_picks(py::module_& m) {
       .def_property_readonly(
           "part", [](const Pick& p) { return p.part.part; }, "Index into the tray's parts.")
       .def_readonly("grasp", &Pick::grasp, "Index into the part's grasps.")
-      .def_readonly("motions", &Pick::motions, "transit, approach, lift, transfer, retreat.")
+      .def_readonly("motions", &Pick::motions,
+                    "transit, approach, lift, transfer, retreat; stow after lift without a bin.")
       .def_readonly("rejections", &Pick::rejections, "Grasps and their configurations rejected on the way, by cause.")
       .def_readonly("failed_at", &Pick::failed_at, "Without a solution: the stage at which most candidates fell.")
       .def_property_readonly("duration", &Pick::duration, "Duration of all its motions [s].")

@@ -11,6 +11,7 @@ void bind_task_pickles(py::module_& m) {
   plain<Part>(m, "Part");
   plain<Tray>(m, "Tray");
   plain<PlaceRegion>(m, "PlaceRegion");
+  plain<UnloadRegion>(m, "UnloadRegion");
   plain<BaseGrid>(m, "BaseGrid");
   plain<PartExplanation>(m, "PartExplanation");
   plain<BaseRegion>(m, "BaseRegion");

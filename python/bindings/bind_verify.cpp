@@ -85,7 +85,8 @@ void bind_checked_parts(py::module_& m) {
            }),
            py::arg("kind"), py::arg("opening"), py::arg("attached"), py::arg("times"), py::arg("positions"),
            py::arg("velocities"), py::arg("accelerations") = py::none(),
-           "`kind`: transit, approach, lift, transfer or retreat; `opening` of the fingers [m]; `attached`: the part "
+           "`kind`: transit, approach, lift, stow, transfer or retreat; `opening` of the fingers [m]; `attached`: the "
+           "part "
            "is; "
            "`times` "
            "(k,) [s];\n`positions`, `velocities` and, where given, `accelerations` (k, n) of the arm's joints.");
@@ -154,6 +155,14 @@ void bind_checked_parts(py::module_& m) {
           py::arg("back_values") = py::none(),
           "Index of the pick that filled the bin; base poses (k, 3) to the goal and, where parts are left at the stop, "
           "back, and what is\nsaid about both.");
+  py::class_<CheckedUnloadRegion>(m, "CheckedUnloadRegion",
+                                  "Where parts are let go at the goal, as the plan file has it.")
+      .def(py::init([](const ArrayLike& T_world_region, const ArrayLike& size, double drop_height) {
+             return CheckedUnloadRegion{pose_argument(T_world_region, "T_world_region"), vector2_argument(size, "size"),
+                                        finite_argument(drop_height, "drop_height")};
+           }),
+           py::arg("T_world_region"), py::arg("size"), py::arg("drop_height"),
+           "Middle of the rectangle (4, 4), z up, its x and y (2,) [m], and how far above it parts are let go [m].");
   py::class_<CheckedGrid>(m, "CheckedGrid", "The grid of a plan's regions.")
       .def(py::init([](const ArrayLike& origin, double resolution, int nx, int ny, std::vector<double> headings) {
              return CheckedGrid{vector2_argument(origin, "grid origin"), resolution, nx, ny, std::move(headings)};
@@ -223,6 +232,8 @@ void bind_plan_to_check(py::module_& m) {
       .def_readwrite("bin_size", &PlanToCheck::bin_size, "Inner x and y (2,) [m].")
       .def_readwrite("drop_height", &PlanToCheck::drop_height,
                      "Height above the bin's top plane at which parts are released [m].")
+      .def_readwrite("unload_region", &PlanToCheck::unload_region,
+                     "Where parts are let go at the goal that the hand brings there; None: they go into the bin.")
       .def_readwrite("floor", &PlanToCheck::floor,
                      "Everything below this height is ground [m], which links that the arm joints move, and what they "
                      "hold, must not\ntouch; -inf: there is none.")

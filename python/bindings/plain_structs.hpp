@@ -400,6 +400,8 @@ inline constexpr std::size_t kFields<Part> = 8;
 template <>
 inline constexpr std::size_t kFields<PlaceRegion> = 4;
 template <>
+inline constexpr std::size_t kFields<UnloadRegion> = 3;
+template <>
 inline constexpr std::size_t kFields<Tray> = 5;
 template <>
 inline constexpr std::size_t kFields<Violation> = 7;

@@ -62,6 +62,7 @@ from ._core import (
     Tray as Tray,
     tray_shapes as tray_shapes,
     PlaceRegion as PlaceRegion,
+    UnloadRegion as UnloadRegion,
     PartSupplyProblem as PartSupplyProblem,
     PartSupplyPlan as PartSupplyPlan,
     Unloading as Unloading,

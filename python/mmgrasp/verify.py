@@ -20,6 +20,7 @@ from ._core.verify import (
     CheckedSuction as CheckedSuction,
     CheckedTray as CheckedTray,
     CheckedUnloading as CheckedUnloading,
+    CheckedUnloadRegion as CheckedUnloadRegion,
     Fault as Fault,
     PathCheckResult as PathCheckResult,
     PlanCheckResult as PlanCheckResult,

@@ -154,6 +154,8 @@ VALUES: dict[str, Any] = {
     "world_axis": np.array([0.0, 0, 1]),
     "T_base_tips": np.array([POSE, POSE]),
     "PlaceRegion.size": np.array([0.1, 0.2]),
+    "UnloadRegion.size": np.array([0.1, 0.2]),
+    "verify.CheckedUnloadRegion.size": np.array([0.1, 0.2]),
     "PartSupplyProblem.start": X_Y_THETA,
     "PartSupplyProblem.goal": X_Y_THETA,
     "drive_clearance": 0.1,

@@ -21,7 +21,7 @@ CHEAP = {
         DriveByTask FingerGrip Grasp GridDistanceField Gripper GripperActuator Hand HandBody HandJoint HeightMap IkSeedDatabase
         JointTrajectory LineGrasp LinkShape ManipulationProblem NodeLoad ObjectPathEvaluator ObjectPathProblem OccupancyMap
         OrientationConstraint Part PartSupplyProblem PinholeCamera Pipe PlaceRegion PlacedMesh Plane ProbabilisticSdf RobotMotion
-        RobotSource RobotSource.add_link RobotSource.add_urdf SegmentRequirement Sphere SupportingPlane ToolRegion Tray World
+        RobotSource RobotSource.add_link RobotSource.add_urdf SegmentRequirement Sphere SupportingPlane ToolRegion Tray UnloadRegion World
         NonlinearProblem copper beam_frame round_section rectangular_section default_grasp_search eigengrasp_hand tray_shapes
         joint_limit_objective singularity_objective camera_view_objective self_distance_objective pose look_down
         verify.PlanToCheck verify.Fault _from_pickle _PlacedBodies

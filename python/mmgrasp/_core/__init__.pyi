@@ -10,7 +10,7 @@ import numpy.typing
 import os
 import typing
 from . import verify
-__all__: list[str] = ['AssemblyGrasp', 'AssemblyOperation', 'BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'BeamExtreme', 'BeamFrame', 'BeamMaterial', 'BeamMember', 'BeamSection', 'BeamState', 'BeamSupport', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactArea', 'ContactPairProvenance', 'ContactPatch', 'CuboidFit', 'Cylinder', 'DepthCamera', 'DepthImage', 'DepthNoise', 'DerivativeFreeResult', 'DistanceField', 'DistanceResult', 'DrawnSuccess', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'Facet', 'FeasibleGrasp', 'FingerGrip', 'FingerLengthRange', 'FittedCuboid', 'FittedPrimitive', 'FrameRegistration', 'Grasp', 'GraspHolding', 'GraspOptimum', 'GraspRating', 'GraspReport', 'GraspSuccess', 'GraspSynthesis', 'GraspWidth', 'Graspability', 'GridDistanceField', 'Gripper', 'GripperActuator', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'HeldLoad', 'HoldingRequirement', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'IntegrationReport', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'KeepOff', 'LineGrasp', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'ManipulationStats', 'Mesh', 'MeshDistanceField', 'MeshSegment', 'MeshSegmentation', 'MinimalGrippersResult', 'MotionResult', 'MotionStats', 'NextView', 'NlpResult', 'NodeLoad', 'NonlinearProblem', 'ObjectPathEvaluator', 'ObjectPathProblem', 'ObjectPathResult', 'ObjectRegions', 'ObjectSegmentation', 'Obstruction', 'OccupancyMap', 'OccupancyReport', 'OperationLoad', 'OperationOverlap', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'PairwiseWeights', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedMesh', 'PlacedPart', 'PlanGrippersResult', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'ProbabilisticSdf', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'RefusedGrasp', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotMotion', 'RobotSource', 'SampledSuctionGrasps', 'ScrewThread', 'SdfHits', 'SearchTree', 'SegmentFate', 'SegmentRequirement', 'SegmentedObject', 'SegmentedPart', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'Suction', 'SuctionCup', 'SupportedFrame', 'SupportingPlane', 'ToolRegion', 'TourResult', 'Tray', 'Unloading', 'ViewCandidate', 'Voxels', 'WholeBodyProgram', 'WholeBodyTrajectory', 'World', 'assembly_grasps', 'beam_frame', 'cache_folder', 'camera_view_objective', 'centric_grasps', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'copper', 'cover_from_intersections', 'default_grasp_search', 'derivative_free_solver_names', 'drive_arc', 'drive_by_program', 'eigengrasp_hand', 'evaluate_graspability', 'find_package', 'finger_length_range', 'fingers_fit', 'fingers_meet', 'fit_cuboids', 'fit_primitives', 'flat_contact', 'follow_object_path', 'free_gripper', 'grasp_holding', 'grasp_search_names', 'graspability_map', 'hand_masks', 'held_load', 'inscribed_circle', 'jaw_grasps', 'joint_limit_objective', 'joint_velocity', 'line_contact', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimal_grippers', 'minimize_derivative_free', 'next_view', 'nlp_solver_names', 'operation_load', 'operation_overlap', 'optimised_order', 'optimize_grasp', 'paired_order', 'pairwise_weights', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_grippers', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stop_picks', 'plan_stops_exact', 'plan_straight_line', 'planar_facets', 'planner_names', 'platform_velocity', 'population_search_names', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'preferred_grippers', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'rectangular_section', 'register_frame', 'rehearse_operation', 'render_depth', 'resting_poses', 'robust_intersections', 'round_section', 'route_lengths', 'run_policy', 'sample_grasps', 'sample_suction_grasps', 'seal_gap', 'segment_depth_image', 'segment_mesh', 'segment_names', 'segment_objects', 'self_distance_objective', 'shape_diameters', 'share_headings', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'soft_finger_torque', 'solve_nonlinear', 'solve_set_cover', 'suction_share', 'synthesize_grasps', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs', 'write_plan']
+__all__: list[str] = ['AssemblyGrasp', 'AssemblyOperation', 'BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'BeamExtreme', 'BeamFrame', 'BeamMaterial', 'BeamMember', 'BeamSection', 'BeamState', 'BeamSupport', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactArea', 'ContactPairProvenance', 'ContactPatch', 'CuboidFit', 'Cylinder', 'DepthCamera', 'DepthImage', 'DepthNoise', 'DerivativeFreeResult', 'DistanceField', 'DistanceResult', 'DrawnSuccess', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'Facet', 'FeasibleGrasp', 'FingerGrip', 'FingerLengthRange', 'FittedCuboid', 'FittedPrimitive', 'FrameRegistration', 'Grasp', 'GraspHolding', 'GraspOptimum', 'GraspRating', 'GraspReport', 'GraspSuccess', 'GraspSynthesis', 'GraspWidth', 'Graspability', 'GridDistanceField', 'Gripper', 'GripperActuator', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'HeldLoad', 'HoldingRequirement', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'IntegrationReport', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'KeepOff', 'LineGrasp', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'ManipulationStats', 'Mesh', 'MeshDistanceField', 'MeshSegment', 'MeshSegmentation', 'MinimalGrippersResult', 'MotionResult', 'MotionStats', 'NextView', 'NlpResult', 'NodeLoad', 'NonlinearProblem', 'ObjectPathEvaluator', 'ObjectPathProblem', 'ObjectPathResult', 'ObjectRegions', 'ObjectSegmentation', 'Obstruction', 'OccupancyMap', 'OccupancyReport', 'OperationLoad', 'OperationOverlap', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'PairwiseWeights', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedMesh', 'PlacedPart', 'PlanGrippersResult', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'ProbabilisticSdf', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'RefusedGrasp', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotMotion', 'RobotSource', 'SampledSuctionGrasps', 'ScrewThread', 'SdfHits', 'SearchTree', 'SegmentFate', 'SegmentRequirement', 'SegmentedObject', 'SegmentedPart', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'Suction', 'SuctionCup', 'SupportedFrame', 'SupportingPlane', 'ToolRegion', 'TourResult', 'Tray', 'UnloadRegion', 'Unloading', 'ViewCandidate', 'Voxels', 'WholeBodyProgram', 'WholeBodyTrajectory', 'World', 'assembly_grasps', 'beam_frame', 'cache_folder', 'camera_view_objective', 'centric_grasps', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'copper', 'cover_from_intersections', 'default_grasp_search', 'derivative_free_solver_names', 'drive_arc', 'drive_by_program', 'eigengrasp_hand', 'evaluate_graspability', 'find_package', 'finger_length_range', 'fingers_fit', 'fingers_meet', 'fit_cuboids', 'fit_primitives', 'flat_contact', 'follow_object_path', 'free_gripper', 'grasp_holding', 'grasp_search_names', 'graspability_map', 'hand_masks', 'held_load', 'inscribed_circle', 'jaw_grasps', 'joint_limit_objective', 'joint_velocity', 'line_contact', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimal_grippers', 'minimize_derivative_free', 'next_view', 'nlp_solver_names', 'operation_load', 'operation_overlap', 'optimised_order', 'optimize_grasp', 'paired_order', 'pairwise_weights', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_grippers', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stop_picks', 'plan_stops_exact', 'plan_straight_line', 'planar_facets', 'planner_names', 'platform_velocity', 'population_search_names', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'preferred_grippers', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'rectangular_section', 'register_frame', 'rehearse_operation', 'render_depth', 'resting_poses', 'robust_intersections', 'round_section', 'route_lengths', 'run_policy', 'sample_grasps', 'sample_suction_grasps', 'seal_gap', 'segment_depth_image', 'segment_mesh', 'segment_names', 'segment_objects', 'self_distance_objective', 'shape_diameters', 'share_headings', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'soft_finger_torque', 'solve_nonlinear', 'solve_set_cover', 'suction_share', 'synthesize_grasps', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs', 'write_plan']
 class Error(Exception):
     """
     Base of all errors of mmgrasp.
@@ -3105,6 +3105,30 @@ class PlaceRegion:
         """
         Inner x and y (2,) [m].
         """
+class UnloadRegion:
+    """
+    Where a robot without a bin lets go what it brought to the goal in its hand: a rectangle in the world.
+    """
+    def __init__(self, T_world_region: numpy.typing.ArrayLike, size: numpy.typing.ArrayLike, drop_height: float = 0.03) -> None:
+        """
+        `T_world_region` (4, 4): middle of the rectangle, z up; `size` (2,): x and y [m], > 0; `drop_height`: how far above it a
+        part is released [m], >= 0. What stands there, a bin or a chute, is an object of the world.
+        """
+    @property
+    def T_world_region(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Middle of the rectangle (4, 4), z up.
+        """
+    @property
+    def drop_height(self) -> float:
+        """
+        A part is released with its lowest point so far above the rectangle [m].
+        """
+    @property
+    def size(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        x and y (2,) [m].
+        """
 class PartSupplyProblem:
     """
     Everything the part-supply planner needs: the robot and its hand, the room, the trays with their parts, and where parts
@@ -3114,12 +3138,13 @@ class PartSupplyProblem:
         database = mg.ReachDatabase.build(problem.arm)
         plan = mg.base.plan_part_supply(problem, database)
     """
-    def __init__(self, robot: Robot, arm: JointGroup, gripper: Hand, world: World, trays: collections.abc.Sequence[Tray], home: numpy.typing.ArrayLike, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike, place_region: PlaceRegion, *, arrival_covariance: numpy.typing.ArrayLike | None = None, drive_clearance: float = 0.0, grid_resolution: float = 0.05, grid_max_distance: float = 0.0, ik_seeds: int = 8, positioning_uncertainty: float = 0.1, approach_distance: float = 0.08, lift_height: float = 0.12, motion_time_limit: float = 5.0, route_resolution: float = 0.1, robustness_samples: int = 2000, seed: int = 1, threads: int = 0) -> None:
+    def __init__(self, robot: Robot, arm: JointGroup, gripper: Hand, world: World, trays: collections.abc.Sequence[Tray], home: numpy.typing.ArrayLike, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike, place_region: PlaceRegion | None, *, arrival_covariance: numpy.typing.ArrayLike | None = None, drive_clearance: float = 0.0, unload_region: UnloadRegion | None = None, grid_resolution: float = 0.05, grid_max_distance: float = 0.0, ik_seeds: int = 8, positioning_uncertainty: float = 0.1, approach_distance: float = 0.08, lift_height: float = 0.12, motion_time_limit: float = 5.0, route_resolution: float = 0.1, robustness_samples: int = 2000, seed: int = 1, threads: int = 0) -> None:
         """
         `world` is without the parts; `home` (n,) is the arm's configuration while driving; `start` and `goal` (3,) are base
         poses x, y, theta [m, m, rad]. `arrival_covariance` (3, 3) of x, y [m^2] and theta [rad^2] in the world's axes says how far
         from a stop the base comes to stand; stops then are where most arrivals serve all their parts. Drives keep
-        `drive_clearance` [m] to all but the ground, but within 1 m of their ends. Raises InvalidInput naming the field that breaks its rule.
+        `drive_clearance` [m] to all but the ground, but within 1 m of their ends. A robot without a bin
+        (`place_region` None) brings each part to the goal in its hand and lets it go over the `unload_region` there. Raises InvalidInput naming the field that breaks its rule.
         
         Keyword options:
             grid_resolution: float = 0.05  # cell edge of the base grid [m]
@@ -3170,9 +3195,9 @@ class PartSupplyProblem:
         Every keyword option with its value.
         """
     @property
-    def place_region(self) -> PlaceRegion:
+    def place_region(self) -> PlaceRegion | None:
         """
-        Where picked parts go.
+        The bin on the robot, where picked parts go; None: there is none.
         """
     @property
     def robot(self) -> Robot:
@@ -3188,6 +3213,11 @@ class PartSupplyProblem:
     def trays(self) -> list[Tray]:
         """
         The trays with their parts.
+        """
+    @property
+    def unload_region(self) -> UnloadRegion | None:
+        """
+        Where parts are let go at the goal that the hand brings there; None: they go into the bin.
         """
     @property
     def world(self) -> World:
@@ -3637,7 +3667,7 @@ class PickMotion:
     @property
     def kind(self) -> str:
         """
-        transit, approach, lift, transfer or retreat.
+        transit, approach, lift, transfer or retreat; stow where the hand carries the part to the goal.
         """
     @property
     def opening(self) -> float:
@@ -3673,7 +3703,7 @@ class Pick:
     @property
     def motions(self) -> list[PickMotion]:
         """
-        transit, approach, lift, transfer, retreat.
+        transit, approach, lift, transfer, retreat; stow after lift without a bin.
         """
     @property
     def outcome(self) -> Outcome:

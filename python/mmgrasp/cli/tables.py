@@ -51,7 +51,9 @@ def summary(plan: ScenarioPlan) -> Table:
     planning = sum(seconds for _, seconds in plan.timings)
     table.caption = f"drive {length:.2f} m in {seconds:.1f} s, planned in {planning:.1f} s{_probabilities(plan)}"
     if plan.plan.unloadings:
-        table.caption += f"\n{len(plan.plan.unloadings) + 1} trips: the bin takes {plan.scenario.setup.place_region.capacity} at a time"
+        place = plan.scenario.setup.place_region
+        load = "the hand carries one part" if place is None else f"the bin takes {place.capacity}"
+        table.caption += f"\n{len(plan.plan.unloadings) + 1} trips: {load} at a time"
     table.caption += f"\nno fewer stops {premises_text(plan.premises)}" if plan.plan.proven_minimal else ""
     return table
 

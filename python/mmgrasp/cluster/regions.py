@@ -75,6 +75,7 @@ def alone(problem: PartSupplyProblem, tray: int) -> PartSupplyProblem:
         problem.start,
         problem.goal,
         problem.place_region,
+        unload_region=problem.unload_region,
         **options,
     )
 

@@ -129,9 +129,14 @@ def arrive(
     `plan` is a plan or the path of a plan.json; the latter's scenario is read from where it was, or from `scenario` (`robot` as in load_scenario),
     and must be the one that was planned for. `stop` is an index into the plan's stops. Parts that the plan picks at earlier stops are gone,
     and so are those named in `picked`. Every motion is checked before it is returned. Raises InvalidInput for a
-    stop, pose, part or scenario that is none, and where the robot at home is not free at the pose.
+    stop, pose, part or scenario that is none, where the robot at home is not free at the pose, and where it has no bin.
     """
     loaded, stops, picks = _read(plan, scenario, robot, progress)
+    if loaded.unload_region is not None:
+        raise InvalidInput(
+            f"{loaded.source}: unload_region: picks are not planned from a measured pose where the robot carries each part to the "
+            "goal in its hand: it stands elsewhere whenever it comes back to the stop"
+        )
     if not stops:
         raise InvalidInput(f"plan = {_name(plan)}: holds no stops")
     if not 0 <= stop < len(stops):

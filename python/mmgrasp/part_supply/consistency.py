@@ -42,12 +42,12 @@ def _hand(plan: Plan) -> Found:
 
 
 def _robot(plan: Plan) -> Found:
-    robot, region = plan["scenario"]["robot"], plan["scenario"]["place_region"]
+    robot, region = plan["scenario"]["robot"], plan["scenario"].get("place_region")
     for k, urdf in enumerate(robot.get("urdfs", [])):
         if not urdf["parent_link"] and not _same(urdf["pose"], _IDENTITY):
             yield f"scenario.robot.urdfs[{k}].pose", "moves the robot's root, which stands where the base does"
     for k, link in enumerate(robot.get("links", [])):
-        if link["name"] != BIN_LINK or not link["shapes"]:
+        if region is None or link["name"] != BIN_LINK or not link["shapes"]:
             continue
         if not _same(link["shapes"][0].get("size", [])[:2], region["size"]):
             yield f"scenario.robot.links[{k}]", "is not of the size of place_region"

@@ -198,8 +198,12 @@ def check_in_passing(scenario: Scenario) -> None:
     sections = scenario.setup.sections
     if scenario.setup.gripper.suction is not None:
         sections.gripper["suction"].fail("drive-by needs a hand with fingers, which close in passing")
-    if scenario.setup.place_region.capacity:
-        assert sections.place_region is not None  # read_setup() refuses a robot without
+    if scenario.unload_region is not None:
+        raise InvalidInput(
+            f"{scenario.source}: unload_region: --drive-by takes no parts in passing that are carried to the goal in the hand, "
+            "since the hand is full until then: give the robot a bin (place_region) for it"
+        )
+    if sections.place_region is not None and "capacity" in sections.place_region:
         sections.place_region["capacity"].fail("drive-by takes no parts of several trips in passing: leave it out")
     if scenario.drive_clearance:
         raise InvalidInput(

@@ -115,11 +115,7 @@ def _read_scene(plan: checks.PlanToCheck, scenario: Node) -> None:
     if "arrival_covariance" in scenario:
         rows = scenario["arrival_covariance"].elements()
         plan.arrival_covariance = np.array([row.numbers(3) for row in rows])
-    place = scenario["place_region"]
-    plan.T_base_bin = place["pose"].pose()
-    plan.bin_size = np.array(place["size"].numbers(2, above=0))
-    plan.drop_height = place["drop_height"].number(least=0)
-    plan.capacity = place["capacity"].integer(least=1) if "capacity" in place else 0
+    _read_place(plan, scenario)
     plan.obstacles = [_read_body(node) for node in scenario["obstacles"].elements()]
     plan.floor = -math.inf if scenario["floor"].raw is None else scenario["floor"].number()
     plan.trays = [tray["name"].string() for tray in scenario["trays"].elements()]
@@ -148,6 +144,22 @@ def _read_scene(plan: checks.PlanToCheck, scenario: Node) -> None:
     plan.parts = parts
     plan.allowed_collisions = allowed_collisions(scenario)
     plan.padded = "padding" in scenario and _pads(scenario["padding"])
+
+
+def _read_place(plan: checks.PlanToCheck, scenario: Node) -> None:
+    """The bin, or where parts are let go at the goal."""
+    if "unload_region" in scenario:
+        region = scenario["unload_region"]
+        if "place_region" in scenario:
+            region.fail("must not stand beside a place_region: parts go to one of both")
+        size, height = np.array(region["size"].numbers(2, above=0)), region["drop_height"].number(least=0)
+        plan.unload_region = checks.CheckedUnloadRegion(region["pose"].pose(), size, height)
+        return
+    place = scenario["place_region"]
+    plan.T_base_bin = place["pose"].pose()
+    plan.bin_size = np.array(place["size"].numbers(2, above=0))
+    plan.drop_height = place["drop_height"].number(least=0)
+    plan.capacity = place["capacity"].integer(least=1) if "capacity" in place else 0
 
 
 def _pads(padding: Node) -> bool:

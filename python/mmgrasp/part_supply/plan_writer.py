@@ -51,6 +51,18 @@ def plan_to_dict(scenario: Scenario, plan: PartSupplyPlan) -> dict[str, Any]:
     return content | {"premises": premises(content)}
 
 
+def _place(scenario: Scenario) -> dict[str, Any]:
+    """The bin, or where parts are let go at the goal."""
+    region = scenario.unload_region
+    if region is not None:
+        row = {"pose": pose_to_dict(region.T_world_region), "size": region.size.tolist()}
+        return {"unload_region": row | {"drop_height": region.drop_height}}
+    place = scenario.setup.place_region
+    assert place is not None  # load_scenario() refuses a scenario without both
+    row = {"pose": pose_to_dict(place.T_base_bin), "size": place.size.tolist(), "drop_height": place.drop_height}
+    return {"place_region": row | ({"capacity": place.capacity} if place.capacity else {})}
+
+
 def _leg(leg: _core.BasePath, scenario: Scenario) -> dict[str, Any]:
     return {
         "poses": leg.poses.tolist(),
@@ -68,7 +80,7 @@ def _unloading(unloading: _core.Unloading, scenario: Scenario) -> dict[str, Any]
 def scenario_to_dict(scenario: Scenario) -> dict[str, Any]:
     """The part of the plan that the scenario alone decides."""
     setup = scenario.setup
-    gripper, arm, robot, place = setup.gripper, setup.arm, setup.robot, setup.place_region
+    gripper, arm, robot = setup.gripper, setup.arm, setup.robot
     return {
         "name": scenario.name,
         "source": scenario.source,
@@ -109,12 +121,7 @@ def scenario_to_dict(scenario: Scenario) -> dict[str, Any]:
         "positioning_uncertainty": scenario.positioning_uncertainty,
         **({"arrival_covariance": known.tolist()} if (known := scenario.arrival_covariance) is not None else {}),
         **({"drive_clearance": scenario.drive_clearance} if scenario.drive_clearance else {}),
-        "place_region": {
-            "pose": pose_to_dict(place.T_base_bin),
-            "size": place.size.tolist(),
-            "drop_height": place.drop_height,
-            **({"capacity": place.capacity} if place.capacity else {}),
-        },
+        **_place(scenario),
         "floor": scenario.floor,
         "obstacles": [
             {"name": o.name, "pose": pose_to_dict(o.pose), "shapes": [shape_to_dict(s) for s in o.shapes]}

@@ -19,7 +19,7 @@ from ..scenario import Scenario, load_scenario
 from .chosen_parts import by_number, choose_parts, others_will_do
 from .plan_writer import plan_to_dict, scenario_to_dict
 from .premises import Premises, premises
-from .round_motion import RoundMotion
+from .round_motion import AT_GOAL, RoundMotion
 
 _IN_PASSES = ("route", "picks")  # of the floor, of drives to choose from and of those that are driven; stop after stop
 _MOST_CHOICES = 5  # choices of parts asked for by number that are planned for
@@ -101,7 +101,9 @@ class ScenarioPlan:
             tray = self.scenario.trays[pick.tray].tray
             part = file_name(tray.parts[pick.part].name)
             for j, motion in enumerate(pick.motions):
-                csv = motion.trajectory.to_csv(base_pose=self.stops[pick.stop].pose)
+                at_goal = self.scenario.unload_region is not None and motion.kind in AT_GOAL
+                base = self.scenario.goal if at_goal else self.stops[pick.stop].pose
+                csv = motion.trajectory.to_csv(base_pose=base)
                 contents[f"pick_{i:02d}_{part}_{j}_{motion.kind}.csv"] = csv
         robot, arm, home = self.scenario.setup.robot, self.scenario.setup.arm, self.scenario.setup.home
         for i, leg in enumerate(self.route):

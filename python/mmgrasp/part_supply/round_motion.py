@@ -5,9 +5,14 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
+import numpy as np
+
 from .. import _core
 from .._core import InvalidInput, Outcome, PartSupplyPlan, RobotMotion
 from ..scenario import Scenario
+
+AT_GOAL = frozenset({"transfer", "retreat"})
+"""Kinds of motions that a pick does at the goal where the hand brings the part there."""
 
 
 @dataclass(frozen=True)
@@ -29,6 +34,7 @@ class RoundMotion:
         self.motion: RobotMotion | None = None
         self.opening: float | None = None
         self.held: str | None = None  # what a motion in passing brought to the bin
+        self.carried: _core.Pick | None = None  # whose part rides to the goal in the hand
 
     def make(self, in_passing: Mapping[int, InPassing]) -> RobotMotion:
         """The round; `in_passing`: what is done so, by the pick's index."""
@@ -36,8 +42,7 @@ class RoundMotion:
         for leg, drive in enumerate(plan.route):
             picks = [i for i, pick in enumerate(plan.picks) if pick.stop == leg]
             if not (picks and picks[0] in in_passing):
-                arm = self.motion.positions[-1] if self.motion is not None else self.setup.home
-                self._add(RobotMotion.of_drive(drive, self.setup.robot, self.setup.arm, arm))
+                self._drive(drive)
             for i in picks:
                 left_out = {"retreat"} if i + 1 in in_passing and in_passing[i + 1].from_release else set()
                 if i in in_passing:
@@ -55,13 +60,19 @@ class RoundMotion:
             self.motion.append(motion)
 
     def _unload(self, pick: int) -> None:
-        """To the goal with a full bin, and back where parts are left."""
+        """To the goal with a full bin or a part in the hand, and back where parts are left."""
         for unloading in self.plan.unloadings:
             for drive in (unloading.to_goal, unloading.back) if unloading.after_pick == pick else ():
                 if drive is not None:
-                    assert self.motion is not None
-                    arm = self.motion.positions[-1]
-                    self._add(RobotMotion.of_drive(drive, self.setup.robot, self.setup.arm, arm))
+                    self._drive(drive)
+
+    def _drive(self, drive: _core.BasePath) -> None:
+        """A drive with the arm where it is; a part that the hand brings is let go at its end, the goal."""
+        arm = self.motion.positions[-1] if self.motion is not None else self.setup.home
+        self._add(RobotMotion.of_drive(drive, self.setup.robot, self.setup.arm, arm))
+        if self.carried is not None:
+            pick, self.carried = self.carried, None
+            self._move(pick, AT_GOAL, self.scenario.goal)
 
     def _part(self, pick: _core.Pick) -> str:
         return str(self.scenario.trays[pick.tray].tray.parts[pick.part].name)
@@ -72,9 +83,15 @@ class RoundMotion:
         self._add(RobotMotion.of_drive_by(result, openings=[self.opening]))
 
     def _pick(self, pick: _core.Pick, left_out: Collection[str]) -> None:
-        base = self.plan.stops[pick.stop].pose
+        kinds = {motion.kind for motion in pick.motions} - set(left_out)
+        if self.scenario.unload_region is not None:
+            self.carried = pick
+            kinds -= AT_GOAL
+        self._move(pick, kinds, self.plan.stops[pick.stop].pose)
+
+    def _move(self, pick: _core.Pick, kinds: Collection[str], base: np.ndarray) -> None:
         for motion in pick.motions:
-            if motion.kind not in left_out:
+            if motion.kind in kinds:
                 self._open_to(motion.opening, self._part(pick))
                 self._add(RobotMotion(motion.trajectory, base))
 

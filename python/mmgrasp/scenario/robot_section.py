@@ -47,7 +47,8 @@ class RobotSetup:
     group: dict[str, Any]
     """What `Robot.group` makes the arm of: an SRDF group's name or its base link, and the tip."""
     gripper: Hand
-    place_region: PlaceRegion
+    place_region: PlaceRegion | None
+    """The bin; None: the robot has none, and parts are carried in the hand."""
     home: np.ndarray
     other_joints: dict[str, float]
     sections: RobotSections
@@ -70,20 +71,34 @@ class RobotSections:
     robot: Node
     gripper: Node
     place_region: Node | None
-    """None: a profile of an arm alone."""
+    """None: a profile of an arm alone, or a scenario whose parts are carried in the hand."""
 
 
 def choose_sections(root: Node, robot_name: str | None) -> RobotSections:
-    """The scenario's own sections, or those of the profile that `--robot` or `robot: {name: ...}` asks for."""
+    """The scenario's own sections, or those of the profile that `--robot` or `robot: {name: ...}` asks for; no bin beside an unload_region."""
+    if "unload_region" in root and "place_region" in root:
+        root["unload_region"].fail(
+            "parts go into the bin, place_region, or are carried in the hand and let go here: leave one of both out"
+        )
+    sections = _sections_as_named(root, robot_name)
+    if "unload_region" in root:
+        sections.place_region = None
+    elif sections.place_region is None and "trays" in root:
+        root.fail(
+            "needs a place_region, the bin on the robot, or an unload_region, where parts that the robot carries in its hand are let go at the goal"
+        )
+    return sections
+
+
+def _sections_as_named(root: Node, robot_name: str | None) -> RobotSections:
     if robot_name is not None:
         return _profile_sections(read_yaml(profile_path(robot_name)).root)
     profile = _named_profile(root["robot"])
+    own_bin = root["place_region"] if "place_region" in root else None
     if profile is None:
-        return RobotSections(root["robot"], root["gripper"], root["place_region"])
+        return RobotSections(root["robot"], root["gripper"], own_bin)
     gripper = root["gripper"] if "gripper" in root else profile.gripper
-    return RobotSections(
-        profile.robot, gripper, root["place_region"] if "place_region" in root else profile.place_region
-    )
+    return RobotSections(profile.robot, gripper, own_bin or profile.place_region)
 
 
 def _named_profile(own: Node) -> RobotSections | None:
@@ -153,15 +168,16 @@ def _sections_of(source: str) -> RobotSections:
 
 
 def read_setup(sections: RobotSections, progress: Progress = None) -> RobotSetup:
-    """Composes the robot, finds which of its links can never touch, and sets up its arm, gripper and bin."""
+    """Composes the robot, finds which of its links can never touch, and sets up its arm, gripper and, where there is one, bin."""
     node = sections.robot.mapping("urdf group tool_link home", ROBOT_KEYS)
-    if sections.place_region is None:
-        node.fail("a part-supply round needs a place_region, which this robot's profile does not have")
     robot = compose(node)
     tool_link = node["tool_link"].string()
     check_link(robot, node["tool_link"])
     gripper = read_hand(sections.gripper, robot, tool_link)
-    robot, bin_pose = _add_bin(robot, sections.place_region)
+    bin_section, place_region = sections.place_region, None
+    if bin_section is not None:
+        robot, bin_pose = _add_bin(robot, bin_section)
+        place_region = _read_place_region(bin_section, bin_pose)
     robot = fingers_may_meet(_core.with_sampled_pairs(robot, progress=progress), gripper)
 
     other = {name: joint_value(robot, name, value) for name, value in _named_numbers(node, "joints")}
@@ -172,7 +188,8 @@ def read_setup(sections: RobotSections, progress: Progress = None) -> RobotSetup
     robot = held_links_may_meet(robot, arm, gripper, other)
     arm = robot.group(**group).with_reference({**other, **closed})
     home = _read_home(node["home"], arm)
-    _fixed_to_root(arm, sections.place_region["parent"], home)
+    if bin_section is not None:
+        _fixed_to_root(arm, bin_section["parent"], home)
     for key in ("finger_links", "cup_links"):
         if key in sections.gripper:
             _check_finger_links(sections.gripper[key], arm, tool_link, home)
@@ -180,7 +197,6 @@ def read_setup(sections: RobotSections, progress: Progress = None) -> RobotSetup
     speed = (
         sections.gripper["closing_speed"].number(least=1e-4, most=10) if "closing_speed" in sections.gripper else 0.1
     )
-    place_region = _read_place_region(sections.place_region, bin_pose)
     return RobotSetup(robot, arm, group, gripper, place_region, home, other, sections, speed, _mesh_tolerance(node))
 
 

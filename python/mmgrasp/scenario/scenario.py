@@ -13,7 +13,17 @@ import numpy as np
 
 from .. import _core
 from .._argument_errors import checked
-from .._core import Box, CollisionChecker, InvalidInput, LinkShape, PartSupplyProblem, Plane, ReachDatabase, World
+from .._core import (
+    Box,
+    CollisionChecker,
+    InvalidInput,
+    LinkShape,
+    PartSupplyProblem,
+    Plane,
+    ReachDatabase,
+    UnloadRegion,
+    World,
+)
 from .._core import verify as checks
 from .._files import shipped
 from .._progress import Progress
@@ -35,8 +45,8 @@ from .tray_section import TraySetup, footprint, read_part_types, read_tray
 
 TOP_KEYS = "format version name robot start goal positioning_uncertainty trays"
 TOP_OPTIONAL = (
-    "arrival_covariance drive_clearance part_types gripper place_region floor obstacles allowed_collisions padding "
-    "options reach"
+    "arrival_covariance drive_clearance part_types gripper place_region unload_region floor obstacles "
+    "allowed_collisions padding options reach"
 )
 FLOOR = "floor"
 MOST_TRAYS = 1000
@@ -84,6 +94,8 @@ class Scenario:
     """Covariance of x, y [m^2] and theta [rad^2] about a stop (3, 3); None: discs are all that counts."""
     drive_clearance: float = 0.0
     """Kept by drives farther than 1 m from both their ends [m]."""
+    unload_region: UnloadRegion | None = None
+    """Where parts are let go at the goal that the hand brings there; None: they go into the bin."""
 
     @property
     def world(self) -> World:
@@ -127,6 +139,7 @@ class Scenario:
             setup.place_region,
             arrival_covariance=self.arrival_covariance,
             drive_clearance=self.drive_clearance,
+            unload_region=self.unload_region,
             positioning_uncertainty=self.positioning_uncertainty,
             **self.options,
         )
@@ -185,12 +198,13 @@ def _read_scenario(
     setup = read_setup(choose_sections(root, robot), progress)
     if setup.robot.base == "fixed":
         root["robot"].fail("a part-supply round needs base: diff_drive or omni")
+    unload_region = _read_unload_region(root["unload_region"], goal, setup) if "unload_region" in root else None
     _check_metres(root, obstacles, setup.robot.base_limits["workspace"])
     closing = ClosingHand(setup.arm, setup.gripper, setup.mesh_tolerance, setup.robot if setup.rates_all_pads else None)
     types = read_part_types(root["part_types"], closing, progress) if "part_types" in root else {}
     scans = ScanReader(closing, _in_world(obstacles), find_file, progress)
     trays = _read_trays(root, types, setup, scans)
-    _warn_of_a_small_bin(trays, types, setup.place_region.size)
+    _warn_of_a_small_place(trays, types, setup, unload_region)
     warn_of_little_room(clearance_key(setup.sections.gripper), setup.gripper, trays)
     check_grid_size(root, trays, {key: value for key, (value, _) in _core._supply_option_table().items()} | options)
     for tray in trays:
@@ -224,6 +238,7 @@ def _read_scenario(
         rules,
         covariance,
         clearance,
+        unload_region,
     )
     for key in ("start", "goal"):
         _check_stands_free(root[key], scenario)
@@ -264,6 +279,22 @@ def _read_clearance(node: Node) -> float:
     if clearance != 0 and not LEAST_CLEARANCE <= clearance <= MOST_CLEARANCE:
         node.fail(f"must be 0, or lie between {LEAST_CLEARANCE:g} and {MOST_CLEARANCE:g}")
     return clearance
+
+
+def _read_unload_region(node: Node, goal: np.ndarray, setup: RobotSetup) -> UnloadRegion:
+    """A rectangle in the world, within the arm's reach of the goal."""
+    node.mapping("pose size", "drop_height")
+    if setup.gripper.suction is not None:
+        node.fail("a hand of suction cups carries nothing on drives: what the base's acceleration pulls is not known")
+    pose = node["pose"].pose()
+    if pose[2, 2] < 1 - 1e-9:
+        node["pose"].fail("must be level: parts are let go over it")
+    away = float(np.hypot(*(pose[:2, 3] - goal[:2])))
+    if away > LONGEST_ARM:
+        node["pose"].fail(f"lies {away:g} m from the goal, where the parts are let go: xyz is in the world, in metres")
+    options = {"drop_height": node["drop_height"].number(least=0)} if "drop_height" in node else {}
+    with node.blamed():
+        return UnloadRegion(pose, node["size"].numbers(2, above=0), **options)
 
 
 def _read_covariance(node: Node) -> np.ndarray:
@@ -360,8 +391,13 @@ def _read_trays(root: Node, types: dict[str, PartType], setup: RobotSetup, scans
     return trays
 
 
-def _warn_of_a_small_bin(trays: list[TraySetup], types: dict[str, PartType], size: np.ndarray) -> None:
-    """Parts are let go level, with their origin over the bin: what is wider than the bin does not fall into it."""
+def _warn_of_a_small_place(
+    trays: list[TraySetup], types: dict[str, PartType], setup: RobotSetup, unload_region: UnloadRegion | None
+) -> None:
+    """Parts are let go level, with their origin over the bin or the region: what is wider does not fall into it."""
+    place = setup.place_region if unload_region is None else unload_region
+    assert place is not None  # choose_sections() refuses a scenario without both
+    key, size = "place_region" if unload_region is None else "unload_region", place.size
     seen: set[str] = set()
     for tray in trays:
         targets = [p for p in tray.tray.parts if p.name in tray.targets and tray.kinds.get(p.name, "") in types]
@@ -373,7 +409,7 @@ def _warn_of_a_small_bin(trays: list[TraySetup], types: dict[str, PartType], siz
             sides = np.sort(footprint(types[kind], part.T_world_part))
             if np.any(sides > np.sort(size) + 1e-6):
                 types[kind].node.warn(
-                    f"is {1e3 * sides[0]:.0f} x {1e3 * sides[1]:.0f} mm, larger than place_region.size, {1e3 * size[0]:.0f} x {1e3 * size[1]:.0f} mm"
+                    f"is {1e3 * sides[0]:.0f} x {1e3 * sides[1]:.0f} mm, larger than {key}.size, {1e3 * size[0]:.0f} x {1e3 * size[1]:.0f} mm"
                 )
 
 

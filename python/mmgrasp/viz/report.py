@@ -14,7 +14,7 @@ import numpy as np
 
 from .._files import write_file
 from .._shares import share_interval
-from ..part_supply.drives import all_drives
+from ..part_supply.drives import all_drives, carried_in_hand
 from ..part_supply.premises import premises, premises_text
 from .style import tray_colour
 from .timeline import Timeline
@@ -157,6 +157,8 @@ def _headline(plan: dict[str, Any]) -> str:
 def _trips(plan: dict[str, Any]) -> str:
     ends = [*(unloading["after_pick"] + 1 for unloading in plan["unloadings"]), len(plan["picks"])]
     loads = [str(b - a) for a, b in itertools.pairwise([0, *ends])]
+    if carried_in_hand(plan):
+        return "trips, each with one part in the hand"
     return f"trips, of {', '.join(loads[:-1])} and {loads[-1]} parts; the bin takes {plan['scenario']['place_region']['capacity']}"
 
 
@@ -225,7 +227,7 @@ def _share(seen: dict[str, int]) -> str:
 
 
 def _picks(plan: dict[str, Any]) -> str:
-    kinds = ["transit", "approach", "lift", "transfer", "retreat"]
+    kinds = ["transit", "approach", "lift", *(["stow"] if carried_in_hand(plan) else []), "transfer", "retreat"]
     parts = {part["name"]: part for part in plan["scenario"]["parts"]}
     scanned = "scans" in plan["scenario"]
     rows = []

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..bodies import stored_pose
-from ..part_supply.drives import unloading_after
+from ..part_supply.drives import carried_in_hand, unloading_after
 
 GRIP_TIME = 0.5  # Shown for closing and for opening the fingers [s].
 
@@ -21,7 +21,7 @@ class State:
     arm: np.ndarray  # configuration of the arm's joints
     opening: float  # of the fingers [m]
     attached: tuple[str, np.ndarray] | None = None  # part name and T_hand_part
-    removed: frozenset[str] = frozenset()  # parts in the bin
+    removed: frozenset[str] = frozenset()  # parts in the bin, or let go at the goal
 
 
 @dataclass
@@ -47,6 +47,7 @@ class Timeline:
         self.plan = plan
         self.home = np.asarray(plan["scenario"]["home"], float)
         self.segments: list[Segment] = []
+        self._carried: dict[str, Any] | None = None  # the pick whose part rides to the goal in the hand
         parts = {part["name"]: part for part in plan["scenario"]["parts"]}
         removed: frozenset[str] = frozenset()
         clock = 0.0
@@ -56,20 +57,35 @@ class Timeline:
             goal = "the goal" if index == len(stops) else f"stop {index + 1}"
             picks = [(i, pick) for i, pick in enumerate(plan["picks"]) if pick["stop"] == index]
             if not picks or picks[0][0] not in passing:
-                poses = np.asarray(leg["poses"], float).reshape(-1, 3)
-                clock = self._add(
-                    Segment(f"drive to {goal}", clock, float(leg["duration"]), "drive", poses, removed=removed)
-                )
+                clock, removed = self._add_drive(f"drive to {goal}", leg, parts, removed, clock)
             for i, pick in picks:
                 base = np.asarray(stops[index]["pose"], float)
                 keeps_retreat = passing.get(i + 1, {}).get("begins") != "release"
                 clock = self._add_pick(pick, base, parts, removed, clock, passing.get(i), keeps_retreat)
-                removed = removed | {pick["part"]}
+                if carried_in_hand(plan):
+                    self._carried = pick
+                else:
+                    removed = removed | {pick["part"]}
                 for where, drive in unloading_after(plan, i):
-                    poses = np.asarray(drive["poses"], float).reshape(-1, 3)
-                    name, seconds = f"drive to {where}", float(drive["duration"])
-                    clock = self._add(Segment(name, clock, seconds, "drive", poses, removed=removed))
+                    clock, removed = self._add_drive(f"drive to {where}", drive, parts, removed, clock)
         self.duration = clock
+
+    def _add_drive(
+        self, name: str, leg: dict[str, Any], parts: dict[str, Any], removed: frozenset[str], clock: float
+    ) -> tuple[float, frozenset[str]]:
+        """A drive, and where it brings a part to the goal in the hand, what lets it go there."""
+        poses = np.asarray(leg["poses"], float).reshape(-1, 3)
+        segment = Segment(name, clock, float(leg["duration"]), "drive", poses, removed=removed)
+        pick, self._carried = self._carried, None
+        if pick is None:
+            return self._add(segment), removed
+        grasp = parts[pick["part"]]["grasps"][pick["grasp"]]
+        segment.attached, segment.opening = _in_hand(pick["part"], grasp), float(grasp["opening"])
+        clock = self._add(segment)
+        goal = np.asarray(self.plan["scenario"]["goal"], float)
+        motions = [motion for motion in pick["motions"] if motion["kind"] in ("transfer", "retreat")]
+        clock = self._add_motions(pick["part"], motions, segment.attached, removed, clock, goal)
+        return clock, removed | {pick["part"]}
 
     def _add(self, segment: Segment) -> float:
         self.segments.append(segment)
@@ -87,8 +103,10 @@ class Timeline:
     ) -> float:
         name = pick["part"]
         grasp = parts[name]["grasps"][pick["grasp"]]
-        in_hand = (name, np.linalg.inv(stored_pose(grasp["pose"])))
+        in_hand = _in_hand(name, grasp)
         motions = pick["motions"]
+        if carried_in_hand(self.plan):
+            motions = [motion for motion in motions if motion["kind"] not in ("transfer", "retreat")]
         if passing is not None:
             closed, end = float(passing["closed_at"]), float(passing["times"][-1])
             coming = Segment(f"drive by {name}", clock, closed, "drive-by", (passing, grasp["opening"]), None, removed)
@@ -101,7 +119,19 @@ class Timeline:
             motions = [m for m in motions if m["kind"] in ("transfer", "retreat")]
             if passing.get("ends") == "release":
                 clock = self._add_grip("release", name, clock, motions.pop(0), in_hand, removed, base)
-        for motion in motions if keeps_retreat else [m for m in motions if m["kind"] != "retreat"]:
+        kept = motions if keeps_retreat else [m for m in motions if m["kind"] != "retreat"]
+        return self._add_motions(name, kept, in_hand, removed, clock, base)
+
+    def _add_motions(
+        self,
+        name: str,
+        motions: list[dict[str, Any]],
+        in_hand: tuple[str, np.ndarray],
+        removed: frozenset[str],
+        clock: float,
+        base: np.ndarray,
+    ) -> float:
+        for motion in motions:
             attached = in_hand if motion["attached"] else None
             binned = removed | {name} if motion["kind"] == "retreat" else removed
             label = f"{motion['kind']} {name}"
@@ -144,7 +174,8 @@ class Timeline:
         local = min(max(time - segment.start, 0.0), segment.duration)
         if segment.kind == "drive":
             share = local / segment.duration if segment.duration > 0 else 1.0
-            return State(along_route(segment.data, share), self.home, 0.0, None, segment.removed)
+            base = along_route(segment.data, share)
+            return State(base, self.home, segment.opening, segment.attached, segment.removed)
         if segment.kind == "drive-by":
             motion, width = segment.data
             when = segment.after + local
@@ -169,6 +200,11 @@ class Timeline:
                 stop = next(p["stop"] for p in self.plan["picks"] if p["part"] == name)
                 result.append((stop, segment.start))
         return result
+
+
+def _in_hand(name: str, grasp: dict[str, Any]) -> tuple[str, np.ndarray]:
+    """A part's name and T_hand_part while it is held so."""
+    return name, np.linalg.inv(stored_pose(grasp["pose"]))
 
 
 def along_route(poses: np.ndarray, share: float) -> np.ndarray:

@@ -70,7 +70,7 @@ def first_scenario(
     place = find_bin(robot, joints, q, hand, outline, progress)
     if place is None:
         doubts.append(
-            "no place for a bin was found that the hand reaches from above: put one where it does (place_region)"
+            "no place for a bin was found that the hand reaches from above: put one where it does (place_region), or have parts carried in the hand (unload_region)"
         )
         place = Bin(robot.links[0], np.array([outline.low[0] - BIN_SIZE[0], 0.0, outline.low[2] + 0.5]), 0.0)
     box = LinkShape(_core.Box(BIN_SIZE), _core.pose([0, 0, -BIN_SIZE[2] / 2]))

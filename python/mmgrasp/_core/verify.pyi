@@ -7,7 +7,7 @@ import mmgrasp._core
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['CheckedBody', 'CheckedCup', 'CheckedDriveBy', 'CheckedFinger', 'CheckedGrasp', 'CheckedGrid', 'CheckedIntersection', 'CheckedLegValues', 'CheckedMotion', 'CheckedPart', 'CheckedPick', 'CheckedRegion', 'CheckedStop', 'CheckedSuction', 'CheckedTray', 'CheckedUnloading', 'Fault', 'PathCheckResult', 'PlanCheckResult', 'PlanToCheck', 'StopRate', 'broken_seal', 'check_path', 'check_plan', 'check_schedule', 'overlapping_bodies', 'pads_unlike_grasp']
+__all__: list[str] = ['CheckedBody', 'CheckedCup', 'CheckedDriveBy', 'CheckedFinger', 'CheckedGrasp', 'CheckedGrid', 'CheckedIntersection', 'CheckedLegValues', 'CheckedMotion', 'CheckedPart', 'CheckedPick', 'CheckedRegion', 'CheckedStop', 'CheckedSuction', 'CheckedTray', 'CheckedUnloadRegion', 'CheckedUnloading', 'Fault', 'PathCheckResult', 'PlanCheckResult', 'PlanToCheck', 'StopRate', 'broken_seal', 'check_path', 'check_plan', 'check_schedule', 'overlapping_bodies', 'pads_unlike_grasp']
 class CheckedBody:
     """
     A body of the scene as the plan file describes it.
@@ -63,7 +63,7 @@ class CheckedMotion:
     """
     def __init__(self, kind: str, opening: float, attached: bool, times: collections.abc.Sequence[float], positions: numpy.typing.ArrayLike, velocities: numpy.typing.ArrayLike, accelerations: numpy.typing.ArrayLike | None = None) -> None:
         """
-        `kind`: transit, approach, lift, transfer or retreat; `opening` of the fingers [m]; `attached`: the part is; `times` (k,) [s];
+        `kind`: transit, approach, lift, stow, transfer or retreat; `opening` of the fingers [m]; `attached`: the part is; `times` (k,) [s];
         `positions`, `velocities` and, where given, `accelerations` (k, n) of the arm's joints.
         """
 class CheckedPick:
@@ -125,6 +125,14 @@ class CheckedUnloading:
         """
         Index of the pick that filled the bin; base poses (k, 3) to the goal and, where parts are left at the stop, back, and what is
         said about both.
+        """
+class CheckedUnloadRegion:
+    """
+    Where parts are let go at the goal, as the plan file has it.
+    """
+    def __init__(self, T_world_region: numpy.typing.ArrayLike, size: numpy.typing.ArrayLike, drop_height: float) -> None:
+        """
+        Middle of the rectangle (4, 4), z up, its x and y (2,) [m], and how far above it parts are let go [m].
         """
 class CheckedGrid:
     """
@@ -531,6 +539,14 @@ class PlanToCheck:
         """
     @trays.setter
     def trays(self, arg0: collections.abc.Sequence[str]) -> None:
+        ...
+    @property
+    def unload_region(self) -> CheckedUnloadRegion | None:
+        """
+        Where parts are let go at the goal that the hand brings there; None: they go into the bin.
+        """
+    @unload_region.setter
+    def unload_region(self, arg0: CheckedUnloadRegion | None) -> None:
         ...
     @property
     def unloadings(self) -> list[CheckedUnloading]:

@@ -54,6 +54,20 @@ def test_the_wait_at_a_crossing_is_that_of_two_discs(crossing: Schedule) -> None
     assert verify_schedule(crossing.to_dict()).ok
 
 
+def test_parts_carried_in_the_hand_are_refused(tmp_path: Path) -> None:
+    first, second = write_plans(tmp_path, plan_along(east()), plan_along(north()))
+    content = json.loads(Path(second).read_text())
+    content["scenario"].pop("place_region")
+    content["scenario"]["unload_region"] = {
+        "pose": {"xyz": [0, 0, 0.5], "quat_xyzw": [0, 0, 0, 1]},
+        "size": [0.3, 0.3],
+        "drop_height": 0.03,
+    }
+    Path(second).write_text(json.dumps(content))
+    with pytest.raises(InvalidInput, match="unload_region: robots that carry parts in the hand are not scheduled"):
+        schedule_plans([first, second], clearance=CLEARANCE)
+
+
 def test_a_wait_that_is_shortened_is_refused(crossing: Schedule) -> None:
     content = crossing.to_dict()
     piece = content["robots"][1]["pieces"][0]

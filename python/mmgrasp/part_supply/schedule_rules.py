@@ -14,10 +14,15 @@ LEAST_CLEARANCE, MOST_CLEARANCE = 0.01, 10.0  # [m]
 
 
 def check_same_room(plans: Sequence[dict[str, Any]], names: Sequence[str]) -> None:
-    """Raises InvalidInput for a plan that is not solved, one of another room than the first, and a part that two plans pick."""
+    """Raises InvalidInput for a plan that is not solved or whose parts are carried in the hand, for one of another room than the first, and for a part that
+    two plans pick."""
     for plan, name in zip(plans, names, strict=True):
         if plan["outcome"] != "solved":
             raise InvalidInput(f"{name}: outcome = {plan['outcome']!r}: must be solved to be scheduled")
+        if "unload_region" in plan["scenario"]:
+            raise InvalidInput(
+                f"{name}: scenario.unload_region: robots that carry parts in the hand are not scheduled with others: give the robot a bin (place_region)"
+            )
     rooms = [{body["name"]: body for body in plan["scenario"]["obstacles"]} for plan in plans]
     picked: dict[tuple[str, str], str] = {}
     for plan, room, name in zip(plans, rooms, names, strict=True):

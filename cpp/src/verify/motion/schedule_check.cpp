@@ -166,6 +166,10 @@ void check_all(const std::vector<ScheduledPlan>& robots, double clearance, const
 
 std::vector<Fault> check_schedule(const std::vector<ScheduledPlan>& robots, double clearance, const Monitor& monitor) {
   require(clearance >= 0.01 && clearance <= 10, "clearance", clearance, "must be in [0.01, 10] [m]");
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    require(!robots[i].plan.unload_region.has_value(), "plans[" + std::to_string(i) + "].unload_region", "given",
+            "must be none: robots that carry parts in the hand are not judged");
+  }
   Faults faults;
   const mmgrasp::detail::InterruptionScope scope(monitor.stop);
   try {

@@ -58,6 +58,8 @@ def plan_along(poses: list[list[float]], urdf: str = PUCK, home: tuple[float, fl
     scenario["home"], scenario["start"], scenario["goal"] = list(home), poses[0], poses[-1]
     plan["route"] = [{"poses": poses, "length": 1.0, "turning": 0.0, "duration": 1.0}]
     plan["stops"], plan["picks"] = [], []
+    scenario["trays"], scenario["parts"] = [], []
+    plan["regions"], plan["intersections"] = [], []
     return plan
 
 

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from mmgrasp import Error, InvalidInput, Outcome
+from mmgrasp.cli import main
 from mmgrasp.part_supply import Schedule, schedule_plans, verify_schedule
 from plan_by_hand import URDF
 from schedule_plans import (
@@ -342,3 +343,60 @@ def test_plans_that_cannot_be_scheduled(tmp_path: Path) -> None:
     for few in ([], paths[:1], paths * 9):
         with pytest.raises(InvalidInput, match="must be 2 to 16"):
             schedule_plans(few)
+
+
+def put(content: Any, keys: str, value: Any) -> None:
+    """Puts a value at `a.0.b`, or takes the key away for None."""
+    *path, last = (int(key) if key.isdigit() else key for key in keys.split("."))
+    for key in path:
+        content = content[key]
+    if value is None:
+        del content[last]
+    else:
+        content[last] = value
+
+
+@pytest.mark.parametrize(
+    ("keys", "value", "said"),
+    [
+        ("scenario.start", [1.0, 1.0, 1.0], r"route\[0\].*must be \[1, 1, 1\], where the robot stands"),
+        ("scenario.goal", [9.0, 9.0, 0.0], r"scenario.goal.*where the robot arrives"),
+        ("route.0", None, r"route.*has 1 legs: must be one more than the 1 stops"),
+        ("picks.0.motions.1.positions.0", [0.3, 0.3], r"motions\[1\].positions\[0\].*where the motion before ends"),
+        ("scenario.gripper.max_opening", 0.0, r"max_opening.*must be > 0"),
+    ],
+)
+def test_plans_that_nobody_can_carry_out_are_refused(tmp_path: Path, keys: str, value: Any, said: str) -> None:
+    first, second = write_plans(tmp_path, plan_with_pick(0.04), plan_along(north(5.0)))
+    schedule_plans([first, second], clearance=CLEARANCE)
+    content = json.loads(first.read_text())
+    put(content, keys, value)
+    first.write_text(json.dumps(content))
+    with pytest.raises(InvalidInput, match=said):
+        schedule_plans([first, second], clearance=CLEARANCE)
+
+
+def test_trays_of_one_room_hold_the_same_parts(tmp_path: Path) -> None:
+    first, second = write_plans(tmp_path, plan_with_pick(0.04), plan_with_pick(0.04))
+    content = json.loads(second.read_text())
+    content["scenario"]["parts"][0]["name"] += " of another room"
+    content["picks"][0]["part"] = content["scenario"]["parts"][0]["name"]
+    second.write_text(json.dumps(content))
+    with pytest.raises(InvalidInput, match=r"tray .*differs from that of .*robot_1.*same trays and parts"):
+        schedule_plans([first, second], clearance=CLEARANCE)
+
+
+def test_a_schedule_may_have_its_keys_in_any_order(crossing: Schedule, tmp_path: Path) -> None:
+    content = crossing.to_dict()
+    path = tmp_path / "sorted.json"
+    path.write_text(json.dumps(dict(sorted(content.items(), reverse=True))))
+    assert main(["verify", str(path)]) == 0
+
+
+def test_outputs_do_not_lie_among_the_trajectories(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    plans = [str(path) for path in write_plans(tmp_path, plan_along(east()), plan_along(north()))]
+    folder, out = str(tmp_path / "csv"), str(tmp_path / "s.json")
+    for more in (["-o", f"{folder}/s.json"], ["-o", out, "--png", f"{folder}/robot_1.csv"]):
+        assert main(["schedule", *plans, "--trajectories", folder, *more]) == 2
+        assert "lies in the folder of --trajectories" in " ".join(capsys.readouterr().err.split())
+    assert not Path(folder).exists() and not Path(out).exists()

@@ -30,12 +30,15 @@ def run_schedule(arguments: argparse.Namespace, console: Console) -> int:
         check_new_file(arguments.png)
         if os.path.realpath(arguments.png) == os.path.realpath(arguments.out):
             raise InvalidInput(f"--png {arguments.png}: is the file of -o, too")
+    for option, path in (("-o", arguments.out), ("--png", arguments.png)):
+        if folder is not None and path is not None and os.path.realpath(path.absolute().parent) == str(folder.path):
+            raise InvalidInput(f"{option} {path}: lies in the folder of --trajectories: give another one")
     with Reporter(console) as report:
         found = schedule_plans(arguments.plans, clearance=arguments.clearance, progress=report)
+        if found.outcome == Outcome.solved and folder is not None:
+            folder.fill(found.save_trajectories)
         found.save(arguments.out)
         if found.outcome == Outcome.solved:
-            if folder is not None:
-                folder.fill(found.save_trajectories)
             if arguments.png is not None:
                 from ..viz.schedule_picture import write_schedule_picture
 

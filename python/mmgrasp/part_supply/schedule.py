@@ -16,6 +16,7 @@ from .._core import InvalidInput, Outcome
 from .._files import check_file, printable, sha256_of, write_file, write_files
 from .._progress import Progress, growing
 from ..documents.reading import read_json
+from .carried_out import check_carried_out
 from .course import Course
 from .plan_file import check_form, check_names
 from .plan_reader import plan_to_check
@@ -103,6 +104,7 @@ def schedule_plans(
     """
     if not LEAST_CLEARANCE <= clearance <= MOST_CLEARANCE:
         raise InvalidInput(f"clearance = {clearance:g}: must be in [{LEAST_CLEARANCE:g}, {MOST_CLEARANCE:g}] [m]")
+    plans = list(plans)
     if not 2 <= len(plans) <= MOST_ROBOTS:
         raise InvalidInput(f"plans: {len(plans)} are given: must be 2 to {MOST_ROBOTS}, one a robot")
     labels = [f"robot {i + 1} ({printable(os.fspath(plan))})" for i, plan in enumerate(plans)]
@@ -133,6 +135,7 @@ def _read(path: Path, label: str) -> _GivenPlan:
     check_form(root)
     check_names(root)
     if root["outcome"].raw == "solved":
+        check_carried_out(root)
         with root["scenario"].blamed():
             plan_to_check(root)
     return _GivenPlan(Path(os.path.abspath(path)), label, root.raw, sha256)

@@ -8,11 +8,12 @@ from pathlib import Path
 from typing import Any
 
 from .._argument_errors import checked
-from .._core import InvalidInput
+from .._core import Error, InvalidInput
 from .._core import verify as checks
 from .._files import read_head, sha256_of
 from .._progress import Progress
 from ..documents.reading import Document, Node, read_json
+from .carried_out import check_carried_out
 from .plan_file import check_form
 from .plan_reader import plan_to_check
 from .schedule_rules import FORMAT, LEAST_CLEARANCE, MOST_CLEARANCE, VERSION, check_same_room
@@ -46,7 +47,19 @@ class ScheduleVerdict:
 
 def is_schedule(path: Path) -> bool:
     """Whether a file says that it is a schedule; whether it is a good one is told when it is read."""
-    return f'"{FORMAT}"'.encode() in read_head(path, _HEAD)
+    head = read_head(path, _HEAD)
+    if b'"format"' in head:
+        return f'"{FORMAT}"'.encode() in head
+    return head.lstrip().startswith(b"{") and _says_so(path)
+
+
+def _says_so(path: Path) -> bool:
+    """The same of a file with its keys in another order."""
+    try:
+        root = read_json(path).root
+    except Error:
+        return False
+    return isinstance(root.raw, dict) and root.raw.get("format") == FORMAT
 
 
 @checked
@@ -105,6 +118,8 @@ def _plan_of(node: Node) -> Node:
         node["plan"].fail("the plan has changed since it was scheduled")
     root = read_json(path).root
     check_form(root)
+    if root["outcome"].raw == "solved":
+        check_carried_out(root)
     return root
 
 

@@ -120,6 +120,7 @@ ELSEWHERE = {
     "set cover": "test_interrupt.py: def test_a_set_cover_is_interrupted_at_any_moment(",
     "reachability database": "test_file_copy.cpp: TEST(FileCopy, WhatWasCutOffIsMissedAndWhatWasReadStays)",
     "depth images": "test_frames.py: def test_a_bad_image_is_named_and_the_others_are_read(",
+    "`unload_region`": "test_carried_parts.py: def test_odd_regions_are_refused(",
     "suction cups of a gripper": "test_suction.py: def test_what_cups_do_not_hold_is_refused(",
     "cache": "test_output_places.py: def test_the_cache_is_optional(",
     "memory": "test_small_processes.py: def test_little_memory_is_one_message(",

@@ -33,6 +33,10 @@ FAILING = {
     "p3-figure-3.34": ["before the shelf: maximal index inside [%] within 25 % of the paper's 20"],
     "p3-figure-4.15": ["and the hand is turned by no more than 30 degrees"],
     "p3-table-4.1": ["ours at the defaults reaches the goal of 0.975 for S."],
+    "p3-table-4.1-rough": [
+        "ours at the defaults reaches the goal of 0.975 for S.",
+        "ours at the defaults reaches the goal of 0.900 for S.w.P.",
+    ],
 }
 """The beginnings of the statements of seed 1, in order; those about times are left out: machines differ."""
 

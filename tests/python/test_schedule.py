@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from conftest import REMOVE, edited
 from mmgrasp import Error, InvalidInput, Outcome
 from mmgrasp.cli import main
 from mmgrasp.part_supply import Schedule, schedule_plans, verify_schedule
@@ -345,23 +346,12 @@ def test_plans_that_cannot_be_scheduled(tmp_path: Path) -> None:
             schedule_plans(few)
 
 
-def put(content: Any, keys: str, value: Any) -> None:
-    """Puts a value at `a.0.b`, or takes the key away for None."""
-    *path, last = (int(key) if key.isdigit() else key for key in keys.split("."))
-    for key in path:
-        content = content[key]
-    if value is None:
-        del content[last]
-    else:
-        content[last] = value
-
-
 @pytest.mark.parametrize(
     ("keys", "value", "said"),
     [
         ("scenario.start", [1.0, 1.0, 1.0], r"route\[0\].*must be \[1, 1, 1\], where the robot stands"),
         ("scenario.goal", [9.0, 9.0, 0.0], r"scenario.goal.*where the robot arrives"),
-        ("route.0", None, r"route.*has 1 legs: must be one more than the 1 stops"),
+        ("route.0", REMOVE, r"route.*has 1 legs: must be one more than the 1 stops"),
         ("picks.0.motions.1.positions.0", [0.3, 0.3], r"motions\[1\].positions\[0\].*where the motion before ends"),
         ("scenario.gripper.max_opening", 0.0, r"max_opening.*must be > 0"),
     ],
@@ -369,9 +359,7 @@ def put(content: Any, keys: str, value: Any) -> None:
 def test_plans_that_nobody_can_carry_out_are_refused(tmp_path: Path, keys: str, value: Any, said: str) -> None:
     first, second = write_plans(tmp_path, plan_with_pick(0.04), plan_along(north(5.0)))
     schedule_plans([first, second], clearance=CLEARANCE)
-    content = json.loads(first.read_text())
-    put(content, keys, value)
-    first.write_text(json.dumps(content))
+    first.write_text(json.dumps(edited(json.loads(first.read_text()), keys, value)))
     with pytest.raises(InvalidInput, match=said):
         schedule_plans([first, second], clearance=CLEARANCE)
 

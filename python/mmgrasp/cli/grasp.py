@@ -6,7 +6,8 @@ import argparse
 import json
 import os
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -55,7 +56,7 @@ def run_grasp(arguments: argparse.Namespace, console: Console) -> int:
     with Reporter(console) as report:
         for k, thing in enumerate(chosen):
             report("grasps", k / len(chosen))
-            rows.append(_grasps_of(thing, plane, sdf, types, around, arguments, tried))
+            rows.append(_first_with_grasps(partial(_grasps_of, thing, plane, sdf, types, around, arguments), tried))
         report("grasps", 1.0)
     content = {"format": FORMAT, "version": VERSION, "gripper": arguments.gripper or arguments.robot, "objects": rows}
     content |= {"samples": arguments.samples, "seed": arguments.seed}
@@ -154,30 +155,22 @@ def _chosen(objects: list[dict[str, Any]], name: str | None, folder: Path) -> li
     return found
 
 
-def _grasps_of(
-    thing: dict[str, Any],
-    plane: dict[str, Any],
-    sdf: _core.ProbabilisticSdf,
-    types: HandTypes,
-    around: Surroundings | None,
-    arguments: argparse.Namespace,
-    tried: Sequence[float],
-) -> dict[str, Any]:
-    """An object's row with the first of the `tried` standard deviations kept free that leaves a grasp; where none does, of the
-    first one."""
-    rows = []
+def _first_with_grasps(row_of: Callable[[float], dict[str, Any]], tried: Sequence[float]) -> dict[str, Any]:
+    """The row of the first of the `tried` standard deviations kept free that leaves a grasp; where none does, of the first one."""
+    rows: list[dict[str, Any]] = []
     for sigmas in tried:
-        rows.append(_row_of(thing, plane, sdf, types, around, arguments, sigmas))
-        if rows[-1]["grasps"] and len(rows) > 1:
-            rows[-1]["summary"] += (
-                f"; kept free: {sigmas:g} standard deviations of the map; with {tried[len(rows) - 2]:g} there is none"
-            )
-        if rows[-1]["grasps"]:
-            return rows[-1]
+        row = row_of(sigmas)
+        if row["grasps"]:
+            if rows:
+                row["summary"] += (
+                    f"; kept free: {sigmas:g} standard deviations of the map; with {rows[-1]['sigmas']:g} there is none"
+                )
+            return row
+        rows.append(row)
     return rows[0]
 
 
-def _row_of(
+def _grasps_of(
     thing: dict[str, Any],
     plane: dict[str, Any],
     sdf: _core.ProbabilisticSdf,
@@ -186,7 +179,7 @@ def _row_of(
     arguments: argparse.Namespace,
     sigmas: float,
 ) -> dict[str, Any]:
-    """The most probable grasps of all types of the hand, and what became of the others."""
+    """An object's row: the most probable grasps of all types of the hand, and what became of the others."""
     box = thing["bounds"].copy()
     middle, normal = box.mean(axis=0), np.array(plane["normal"])
     table = float((plane["offset"] - normal[:2] @ middle[:2]) / normal[2])

@@ -159,6 +159,22 @@ TEST(Eigengrasp, PinchOfABoxFingerByFinger) {
   }
 }
 
+/// Long enough for two fingers 66 mm apart.
+const Vector3d kBar(0.05, 0.16, 0.09);
+const Pose kBarPose = at(0, 0, 0.045, 0.4);
+const ProbabilisticSdf& bar_map() {
+  static const ProbabilisticSdf map = scan({table_plane(), {Box{kBar}, kBarPose}});
+  return map;
+}
+
+SynthesisOptions bar_options() {
+  SynthesisOptions options;
+  options.table = 0.0;
+  options.threads = 1;
+  options.samples = 400;
+  return options;
+}
+
 /// Whether two grasps stand near each other, come the same way and close along opposite axes.
 bool are_half_a_turn_apart(const HandModel& model, const Grasp& a, const Grasp& b) {
   const auto axis = [&](const Grasp& grasp) -> Vector3d {
@@ -172,15 +188,12 @@ bool are_half_a_turn_apart(const HandModel& model, const Grasp& a, const Grasp& 
 }
 
 TEST(Eigengrasp, ThumbOnEitherSideIsAnotherGraspAndParallelFingersAreNot) {
-  const ProbabilisticSdf map = scan({table_plane(), {Box{Vector3d(0.05, 0.16, 0.09)}, at(0, 0, 0.045, 0.4)}});
-  SynthesisOptions options;
-  options.table = 0.0;
-  options.threads = 1;
+  SynthesisOptions options = bar_options();
   options.samples = 800;
   options.max_grasps = 400;
   options.min_distance = 0.03;
   const auto pairs = [&](const HandModel& model) {
-    const GraspSynthesis found = synthesize_grasps(map, model, options);
+    const GraspSynthesis found = synthesize_grasps(bar_map(), model, options);
     EXPECT_EQ(found.outcome, Outcome::solved) << found.summary();
     int count = 0;
     for (std::size_t i = 0; i < found.grasps.size(); ++i)
@@ -192,24 +205,16 @@ TEST(Eigengrasp, ThumbOnEitherSideIsAnotherGraspAndParallelFingersAreNot) {
 }
 
 TEST(Eigengrasp, ThreeFingersHoldABar) {
-  // Long enough for the two fingers 66 mm apart.
-  const Vector3d size(0.05, 0.16, 0.09);
-  const Pose T_bar = at(0, 0, 0.045, 0.4);
-  const ProbabilisticSdf map = scan({table_plane(), {Box{size}, T_bar}});
-  SynthesisOptions options;
-  options.table = 0.0;
-  options.threads = 1;
-  options.samples = 400;
   const auto model = make_hand_model(eigengrasp_hand(sdh(), "tcp", kGroups, kCylindrical), sdh());
-  const GraspSynthesis found = synthesize_grasps(map, *model, options);
+  const GraspSynthesis found = synthesize_grasps(bar_map(), *model, bar_options());
   ASSERT_EQ(found.outcome, Outcome::solved) << found.summary();
   for (const GraspRating& rating : found.ratings) {
     ASSERT_EQ(rating.patches.size(), 3u);
     EXPECT_TRUE(rating.success.force_closure);
     int sides[2] = {0, 0};
     for (const ContactPatch& patch : rating.patches) {
-      const Vector3d p = T_bar.inverse() * patch.point;
-      EXPECT_NEAR(std::abs(p.x()), size.x() / 2, 0.0015);
+      const Vector3d p = kBarPose.inverse() * patch.point;
+      EXPECT_NEAR(std::abs(p.x()), kBar.x() / 2, 0.0015);
       ++sides[p.x() > 0 ? 1 : 0];
     }
     EXPECT_EQ(sides[0] * sides[1], 2);  // the thumb on one side, both fingers on the other
@@ -291,22 +296,15 @@ TEST(Eigengrasp, ThreeFingerGripperOfDataHoldsABar) {
     type.closed.segment(3 * finger, 3) = Vector3d(0.9, 0, -0.9);
   }
   const auto model = make_hand_model(eigengrasp_hand(robot, "palm", three_fingers(), type, Vector3d::UnitY()), robot);
-  const Vector3d size(0.05, 0.16, 0.09);
-  const Pose T_bar = at(0, 0, 0.045, 0.4);
-  const ProbabilisticSdf map = scan({table_plane(), {Box{size}, T_bar}});
-  SynthesisOptions options;
-  options.table = 0.0;
-  options.threads = 1;
-  options.samples = 400;
-  const GraspSynthesis found = synthesize_grasps(map, *model, options);
+  const GraspSynthesis found = synthesize_grasps(bar_map(), *model, bar_options());
   ASSERT_EQ(found.outcome, Outcome::solved) << found.summary();
   for (std::size_t i = 0; i < found.grasps.size(); ++i) {
-    EXPECT_NEAR(found.grasps[i].opening, size.x(), 0.01);
+    EXPECT_NEAR(found.grasps[i].opening, kBar.x(), 0.01);
     ASSERT_EQ(found.ratings[i].patches.size(), 3u);
     for (const ContactPatch& patch : found.ratings[i].patches) {
-      const Vector3d p = T_bar.inverse() * patch.point;
-      EXPECT_NEAR(std::abs(p.x()), size.x() / 2, 0.0015);
-      EXPECT_LT(std::abs(p.y()), size.y() / 2);
+      const Vector3d p = kBarPose.inverse() * patch.point;
+      EXPECT_NEAR(std::abs(p.x()), kBar.x() / 2, 0.0015);
+      EXPECT_LT(std::abs(p.y()), kBar.y() / 2);
     }
   }
 }

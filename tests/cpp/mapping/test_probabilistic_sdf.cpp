@@ -5,57 +5,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
-#include <sstream>
 
 #include "mapping/sdf_scenes.hpp"
 #include "mmgrasp/core/detail/instruction_set.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/geometry/ray_caster.hpp"
-#include "support/temporary_folder.hpp"
 
 using namespace mmgrasp;
 using namespace mmgrasp::test;
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
-
-namespace {
-
-/// All pixels at the same depth.
-DepthImage wall(const DepthCamera& camera, double depth) {
-  DepthImage image{camera.intrinsics, Pose::Identity(), {}};
-  image.depth.assign(static_cast<std::size_t>(camera.intrinsics.width) * camera.intrinsics.height,
-                     static_cast<float>(depth));
-  return image;
-}
-
-std::string bytes_of(const ProbabilisticSdf& sdf) {
-  const TemporaryFolder folder;
-  const std::string path = folder.file("bytes.sdf");
-  sdf.save(path);
-  std::ostringstream out;
-  out << std::ifstream(path, std::ios::binary).rdbuf();
-  return out.str();
-}
-
-std::vector<DepthImage> noisy_sphere_frames(int count, const DepthCamera& camera, double radius) {
-  std::vector<DepthImage> frames;
-  for (int k = 0; k < count; ++k) {
-    frames.push_back(frame_of({{Sphere{radius}}}, camera, look_at(0.3 * direction_of(k, count), {0, 0, 0})));
-    Rng rng(7, static_cast<std::uint64_t>(k));
-    disturb(frames.back(), camera, rng);
-  }
-  return frames;
-}
-
-Matrix3Xd random_points(int count, double spread) {
-  Rng rng(3);
-  Matrix3Xd points(3, count);
-  for (double& value : points.reshaped()) value = rng.uniform(-spread, spread);
-  return points;
-}
-
-}  // namespace
 
 TEST(ProbabilisticSdf, MeshOfABoxIsThatOfItsCells) {
   ProbabilisticSdf sdf;
@@ -452,73 +411,6 @@ TEST(ProbabilisticSdf, DistanceFieldTakesItsMargin) {
 
 /// Many points are sorted by block, fewer are worked on in groups, one is looked up alone: each has the same bits, on
 /// the borders of blocks, where the map ends and far from it, with one layer and with two, carved or not.
-TEST(ProbabilisticSdf, PointsAnswerTheSameHoweverMany) {
-  DepthCamera fine = small_camera(0.0005), biased = small_camera(0.001);
-  biased.name = "biased";
-  biased.systematic = 0.0005;
-  for (const bool two : {false, true}) {
-    ProbabilisticSdf sdf;
-    for (const DepthImage& frame : noisy_sphere_frames(6, fine, 0.05)) sdf.integrate(frame, fine);
-    for (int k = 0; k < 9; ++k) sdf.integrate(wall(two ? biased : fine, 0.3), two ? biased : fine);
-    Matrix3Xd points = random_points(60'000, 0.055);
-    for (int i = 0; i < 3000; ++i) points.col(i) = 0.016 * (points.col(i) / 0.016).array().round().matrix();  // corners
-    for (int i = 3000; i < 6000; ++i) points(i % 3, i) = 0.016 * std::round(points(i % 3, i) / 0.016);        // faces
-    points.col(6000) = Vector3d(1e6, 0, 0);
-    points.col(6001) = Vector3d(0, -1e6, 0);
-    points.col(6002) = Vector3d(0, 0, 8.0 * ((1 << 20) - 8) * 0.002);
-    ASSERT_LE(4 * sdf.blocks(), 4096u);  // so that all points at once are sorted
-    const SdfValues all = sdf.query(points);
-    int known = 0;
-    const auto expect_same = [&](const SdfValues& part, Eigen::Index first) {
-      for (Eigen::Index i = 0; i < part.mean.size(); ++i) {
-        ASSERT_EQ(part.known[i], all.known[first + i]) << two << " " << first + i;
-        if (!part.known[i]) continue;
-        ++known;
-        ASSERT_EQ(part.mean[i], all.mean[first + i]) << two << " " << first + i;
-        ASSERT_EQ(part.sigma[i], all.sigma[first + i]) << two << " " << first + i;
-      }
-    };
-    for (Eigen::Index first = 0; first < points.cols(); first += 100)
-      expect_same(sdf.query(points.middleCols(first, 100)), first);
-    for (Eigen::Index i = 0; i < points.cols(); i += 7) expect_same(sdf.query(points.col(i)), i);
-    EXPECT_GT(known, 5000);
-    EXPECT_FALSE(all.known[6000] || all.known[6001] || all.known[6002]);
-  }
-}
-
-TEST(ProbabilisticSdf, CroppedMapsAnswerTheSameAndTakeFrames) {
-  DepthCamera fine = small_camera(0.0005), biased = small_camera(0.001);
-  biased.name = "biased";
-  biased.systematic = 0.0005;
-  ProbabilisticSdf whole;
-  for (const DepthImage& frame : noisy_sphere_frames(6, fine, 0.05)) whole.integrate(frame, fine);
-  for (int k = 0; k < 3; ++k) whole.integrate(wall(biased, 0.3), biased);
-  const Eigen::AlignedBox3d box(Vector3d(-0.02, -0.06, -0.01), Vector3d(0.06, 0.03, 0.06));
-  ProbabilisticSdf part = whole.cropped(box);
-  EXPECT_LT(2 * part.blocks(), whole.blocks());
-  EXPECT_EQ(part.frames(), whole.frames());
-  Matrix3Xd points = random_points(20'000, 0.06);
-  for (Eigen::Index i = 0; i < points.cols(); ++i)
-    points.col(i) = points.col(i).cwiseMax(box.min()).cwiseMin(box.max());  // many on its faces and edges
-  int known = 0;
-  const auto expect_same = [&] {
-    const SdfValues all = whole.query(points), own = part.query(points);
-    for (Eigen::Index i = 0; i < points.cols(); ++i) {
-      ASSERT_EQ(own.known[i], all.known[i]) << i;
-      if (!own.known[i]) continue;
-      ++known;
-      ASSERT_EQ(own.mean[i], all.mean[i]) << i;
-      ASSERT_EQ(own.sigma[i], all.sigma[i]) << i;
-    }
-  };
-  expect_same();
-  EXPECT_GT(known, 500);
-  const std::size_t blocks = whole.blocks();
-  for (ProbabilisticSdf* map : {&whole, &part}) map->integrate(wall(fine, 0.25), fine);
-  expect_same();
-  EXPECT_GE(whole.blocks(), blocks);
-}
-
 TEST(ProbabilisticSdf, EmptyMapsAnswer) {
   const ProbabilisticSdf sdf;
   EXPECT_FALSE(sdf.query(Vector3d(0, 0, 0)).known[0]);

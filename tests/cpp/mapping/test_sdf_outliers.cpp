@@ -2,13 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
-#include <sstream>
 
 #include "mapping/sdf_scenes.hpp"
 #include "mmgrasp/core/detail/instruction_set.hpp"
 #include "mmgrasp/core/error.hpp"
-#include "support/temporary_folder.hpp"
 
 using namespace mmgrasp;
 using namespace mmgrasp::test;
@@ -104,22 +101,6 @@ SurfaceError error_with(Fault fault, double gate, int frames = 12) {
   std::printf("fault %d, gate %.0f: rms %.3f mm, farthest %.2f mm, %d of %d vertices beyond 3 mm\n",
               static_cast<int>(fault), gate, 1e3 * out.rms, 1e3 * out.farthest, out.beyond, out.vertices);
   return out;
-}
-
-DepthImage wall(const DepthCamera& camera, double depth) {
-  DepthImage image{camera.intrinsics, Pose::Identity(), {}};
-  image.depth.assign(static_cast<std::size_t>(camera.intrinsics.width) * camera.intrinsics.height,
-                     static_cast<float>(depth));
-  return image;
-}
-
-std::string bytes_of(const ProbabilisticSdf& sdf) {
-  const TemporaryFolder folder;
-  const std::string path = folder.file("bytes.sdf");
-  sdf.save(path);
-  std::ostringstream out;
-  out << std::ifstream(path, std::ios::binary).rdbuf();
-  return out.str();
 }
 
 }  // namespace
